@@ -52,16 +52,21 @@ def part_state(
     if part.turns:
         return _turned(part, size, metre, virtual, rest, sense)
     (first, start), (second, end) = (place_on(linkage, place) for place in part.places)
-    one, other = rest.point(first, start).position, rest.point(second, end).position
-    way = other - one
+    ends = part_ends(part, linkage, rest)
+    way = ends[1] - ends[0]
     length = np.hypot(way[..., 0], way[..., 1])
     parting = virtual.point(second, end).velocity - virtual.point(first, start).velocity
     with np.errstate(invalid="ignore", divide="ignore"):
         rate = np.where(length > 0, sense * (way * parting).sum(axis=-1) / length, 0.0)
-    ends = np.stack(np.broadcast_arrays(one, other))
     return PartState(
         length, rate, part.count * part.sense * force_at(size, length), part.count * size.friction, ends
     )
+
+
+def part_ends(part: PartSpec, linkage: Linkage, at: Kinematics) -> FloatArray:
+    """Both pivots of a placed strut or straight spring, shape (2, N, 2), length."""
+    places = (at.point(*place_on(linkage, place)).position for place in part.places)
+    return np.stack(np.broadcast_arrays(*places))
 
 
 def force_at(size: PartSize, length: FloatArray) -> FloatArray:

@@ -2,38 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from grashof.analysis.effort.deviation import effort_figures
 from grashof.analysis.judge.effort_of_file import effort_of_file
 from grashof.analysis.judge.effort_travel import effort_defects, effort_of_design
 from grashof.problems import LinkageSpec, ProblemError
-from grashof.problems.values.dynamics.effort import EffortSpec
+from grashof.problems.values.dynamics.struts import PartSpec
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.effort.placing import placed
 
 _OF_PARTS = "effort.parts"
 
 
-def with_parts(candidate: Candidate, known: EffortSpec | None = None) -> Candidate:
+def with_parts(candidate: Candidate, known: Sequence[PartSpec] = ()) -> Candidate:
     """A design with struts and springs: those that are known, with their defects, or the best that are found.
 
     Parts that the search found and the judge rejects are left out.
     """
     linkage, problem, verdict = candidate.linkage, candidate.problem, candidate.verdict
-    case = effort_of_design(linkage, problem, verdict, known)
+    case = effort_of_design(linkage, problem, verdict)
     if case is None:
         return candidate
-    if known is not None and known.is_placed:
-        defects = (*verdict.defects, *effort_defects(case))
-        return replace(candidate, verdict=replace(verdict, effort=known, defects=defects))
-    found = placed(case)
-    if found is None:
+    given = bool(known) and all(part.is_placed for part in known)
+    effort = replace(case.spec, parts=tuple(known)) if given else placed(case)
+    if effort is None:
         return candidate
-    judged = effort_of_design(linkage, problem, verdict, found)
-    if judged is None or any(miss.key.startswith(_OF_PARTS) for miss in effort_figures(judged).misses):
+    defects = effort_defects(replace(case, dynamics=replace(case.dynamics, effort=effort)))
+    if given:
+        return replace(
+            candidate, verdict=replace(verdict, effort=effort, defects=(*verdict.defects, *defects))
+        )
+    if any(defect.requirement.startswith(_OF_PARTS) for defect in defects):
         return candidate
-    return replace(candidate, verdict=replace(verdict, effort=found))
+    return replace(candidate, verdict=replace(verdict, effort=effort))
 
 
 def place_parts(spec: LinkageSpec) -> LinkageSpec:

@@ -49,6 +49,9 @@ _BEFORE = {
         "point_link": ("link of P", "link that carries P, in whose frame p_u and p_v are"),
     },
     "cylinder_base_x": {"cylinder_on": ("cylinder, on link", "")},
+    "effort_deviation": {
+        "part_sizes": ("struts and springs", "number, kind and size of each, for the effort")
+    },
     "omega4_max": {
         "circuit_ok": ("all targets on one circuit", ""),
         "branch_ok": ("all targets on one branch", ""),
@@ -141,6 +144,8 @@ def facts(candidate: Candidate) -> dict[str, Any]:
     """Names and classes of a design, by column; None where unknown."""
     verdict = candidate.verdict
     driven = {} if verdict.cylinder is None else {"cylinder_on": verdict.cylinder.on}
+    if verdict.effort is not None:
+        driven["part_sizes"] = "; ".join(part.chosen for part in verdict.effort.parts)
     return {
         "id": candidate.id,
         "mechanism": candidate.linkage.mechanism.word,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.problems.values.dynamics.struts import BODY, EffortPlace, PartSpec
 
 _ABOUT_STROKES = 49  # samples over the travel, on which strokes are kept
-INSET = 1e-6  # share of a stroke by which it is tightened, so that the judge finds it kept
+INSET = 1e-5  # share of a stroke by which it is tightened, so that the judge finds it kept
 _SAMPLES, _LEAST = 41, 7  # over what is wanted of the entire travel, and of any part of it
 
 
@@ -70,7 +70,7 @@ class Part:
 
 
 class Found(NamedTuple):
-    """Of K candidates: excess (K, M) over what is wanted, N, and margins (K, P, 2 I) of strokes, shares."""
+    """Of K candidates: excess (K, M) over what is wanted, N, and margins (K, P, 2, S) of strokes, shares."""
 
     excess: FloatArray
     margins: FloatArray
@@ -88,7 +88,8 @@ class Aim:
     most: FloatArray
     friction: FloatArray  # (I,): of the joints
     times: FloatArray  # (I,): number of times that friction is added to limits
-    scale: float = field(default=1.0)  # N
+    strokes: int  # samples, the first ones, that are spread over the travel for strokes
+    scale: float  # N
 
     @classmethod
     def of(cls, case: EffortCase) -> Aim:
@@ -123,7 +124,7 @@ class Aim:
         without = np.where(known, counted * state.without, 0.0)
         scale = float(np.abs(without).max(initial=0.0)) or 1.0
         parts = tuple(_part(part, bare, places) for part in case.spec.parts)
-        return cls(frames, parts, without, per, least, most, state.friction, times, scale)
+        return cls(frames, parts, without, per, least, most, state.friction, times, _ABOUT_STROKES, scale)
 
     @property
     def unknowns(self) -> int:
@@ -149,7 +150,8 @@ class Aim:
             name: getattr(self, name)[rows]
             for name in ("without", "per", "least", "most", "friction", "times")
         }
-        return replace(self, frames=frames, parts=parts, **arrays)
+        strokes = len(range(0, self.strokes, step))
+        return replace(self, frames=frames, parts=parts, strokes=strokes, **arrays)
 
     def lengths(self, part: int, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Lengths of a part and their rates, (K, I), of unknowns (K, n); of torsion springs turns, deg."""
@@ -182,7 +184,7 @@ class Aim:
         temperatures = {len(part.warmth) for part in self.parts} or {1}
         gained = np.zeros((count, max(temperatures), len(self.without)))
         friction = np.broadcast_to(self.friction, (count, len(self.without)))
-        margins = np.empty((count, len(self.parts), 2 * len(self.without)))
+        margins = np.empty((count, len(self.parts), 2, self.strokes))
         for number, (part, (length, rate)) in enumerate(zip(self.parts, known, strict=True)):
             row = rows[:, number]
             force, slope, longest, shortest, rubbed = (
@@ -196,14 +198,24 @@ class Aim:
             )
             gained = gained + part.warmth[:, None] * pushed[:, None]
             friction = friction + rubbed * np.abs(rate) * np.abs(self.per)
-            stroke = longest - shortest
-            margins[:, number] = np.concatenate(
-                [(longest - length) / stroke, (length - shortest) / stroke], axis=1
-            )
+            over_travel = length[:, : self.strokes]
+            ends = np.stack([longest - over_travel, over_travel - shortest], axis=1)
+            margins[:, number] = _between_samples(ends / (longest - shortest)[..., None])
         effort = self.without - self.per * gained
         loss = (self.times * friction)[:, None]
         over = np.maximum(effort - self.most + loss, self.least - effort + loss)
         return Found(over.reshape(count, -1), margins - INSET)
+
+
+def _between_samples(values: FloatArray) -> FloatArray:
+    """Values (..., S) of smooth curves with the least ones moved to the vertex of the parabola about them."""
+    before, middle, after = values[..., :-2], values[..., 1:-1], values[..., 2:]
+    bend, slope = before - 2 * middle + after, after - before
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lower = np.where((middle < before) & (middle <= after), slope**2 / (8 * bend), 0.0)
+    found = values.copy()
+    found[..., 1:-1] -= lower
+    return found
 
 
 def _samples(case: EffortCase) -> tuple[FloatArray, tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from grashof import load, synthesize
+from grashof.analysis import solve_position
 from grashof.synth import Candidate, Result
 
 QUICK = ["toggle-clamp"]
 SLOW = [
-    "bus-wiper", "container-lid", "drag-brace", "garage-door-track", "jewellery-box-lid", "robot-intake",
-    "steering", "trunk-lid", "twelve-timed",
+    "bus-wiper", "container-lid", "drag-brace", "garage-door-track", "jewellery-box-lid", "kitchen-flap",
+    "robot-intake", "steering", "trunk-lid", "trunk-lid-struts", "twelve-timed",
 ]  # fmt: skip
 
 
@@ -92,3 +93,52 @@ def test_the_steering_is_a_symmetric_trapezium_that_keeps_to_the_law_of_ackerman
         for turned in (to_left, to_right):
             inner, outer = 1 / np.tan(np.radians(turned))
             assert outer - inner == pytest.approx(0.5, abs=1e-4)
+
+
+def effort_of(design: Candidate) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Angles, deg, the effort at each temperature and the friction, N, from energies along the hand's way."""
+    effort, (a, *_), steps = design.verdict.effort, design.verdict.theta2, 2001
+    assert effort is not None
+    dynamics = design.problem.dynamics
+    assert dynamics is not None
+    at = solve_position(
+        design.linkage, np.linspace(a, design.verdict.theta2[-1], steps), design.verdict.assembly[0]
+    )
+    axis = np.exp(1j * (at.theta3 + float(design.linkage.body_angle)))
+    p = at.p @ [1, 1j]
+    (part,), hand = effort.parts, p + complex(*effort.on.point) * axis
+    foot, head = (complex(*place.point) for place in part.places)
+    length, size = np.abs(p + head * axis - foot), part.sizes[0]
+    assert size.compressed - 1e-6 <= length.min()
+    assert length.max() <= size.extended + 1e-6
+    turned = np.abs(np.degrees(np.unwrap(np.angle(axis / axis[0]))))
+    push = (
+        size.force_extended
+        + (size.force_compressed - size.force_extended) * (size.extended - length) / size.stroke
+    )
+    way = np.abs(np.diff(hand))
+    lifted = 9.81 * dynamics.payload * np.diff(p.imag) / way
+    pushed = part.count * (push[1:] + push[:-1]) / 2 * np.diff(length) / way
+    warm = [(each + 273.15) / 293.15 for each in effort.temperatures_c]
+    rubbed = part.count * size.friction * np.abs(np.diff(length)) / way
+    return (turned[1:] + turned[:-1]) / 2, np.stack([lifted - each * pushed for each in warm]), rubbed
+
+
+@pytest.mark.slow
+def test_the_flap_stays_where_it_is_left_and_closes_by_itself() -> None:
+    for design in solved("kitchen-flap").candidates:
+        angle, effort, friction = effort_of(design)
+        assert design.values["effort_deviation"] == 0
+        stays, closes = (angle > 20) & (angle < 80), angle < 10
+        assert (np.abs(effort) <= friction)[:, stays].all()
+        assert (effort >= friction)[:, closes].all()
+
+
+@pytest.mark.slow
+def test_the_trunk_lid_is_lifted_with_the_effort_that_is_wanted() -> None:
+    for design in solved("trunk-lid-struts").candidates:
+        angle, effort, _ = effort_of(design)
+        wanted = np.interp(angle, (0, 40, 80), (30, 10, -30))
+        worst = np.abs(effort - wanted)[:, angle <= 80].max()
+        assert design.values["effort_deviation"] == pytest.approx(worst, abs=0.02)
+        assert worst < 10

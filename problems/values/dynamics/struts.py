@@ -197,6 +197,11 @@ class PartSpec(TableValue):
         fixed = all(each.is_point for each in self.places) and (angle is None or angle[0] == angle[1])
         return len(self.sizes) == 1 and fixed
 
+    @property
+    def chosen(self) -> str:
+        """Number, kind and name of the first size, in words."""
+        return f"{self.count} x {self.kind} {self.sizes[0].name}".rstrip()
+
     def warmth(self, temperature_c: float) -> float:
         """Force at a temperature over that at 20 deg C: the ratio of absolute temperatures of a gas."""
         return (temperature_c - ZERO_C) / (STATED_C - ZERO_C) if self.kind == GAS else 1.0

@@ -13,7 +13,9 @@ from matplotlib.patches import Polygon
 
 from grashof.analysis import Position
 from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.effort.parts import part_ends
 from grashof.analysis.judge.cylinder_drive import figures_of
+from grashof.analysis.mechanism.kinematics import virtual_motion
 from grashof.drawing.scene import CORNERS, Scene
 from grashof.figures.parts import COLOURS, COUPLER, GROUND, PATH, SCENE
 from grashof.figures.subject import Subject
@@ -27,7 +29,7 @@ _SHARE = 0.9  # length of the body of a cylinder over its closed length
 
 def placements(subject: Subject, scene: Scene, state: Position) -> list[Placement]:
     """Places of all points in each of N positions."""
-    found = scene.places(state) | _cylinder_places(subject, state)
+    found = scene.places(state) | _cylinder_places(subject, state) | _strut_places(subject, state)
     return [{name: place[k] for name, place in found.items()} for k in range(len(state.theta2))]
 
 
@@ -42,6 +44,26 @@ def _cylinder_places(subject: Subject, state: Position) -> dict[str, FloatArray]
     base = np.broadcast_to(np.asarray(verdict.cylinder.base), found.pivot.shape)
     share = np.minimum(_SHARE * closed / np.maximum(found.length, 1e-300), 1.0)[:, None]
     return dict(zip(_CYLINDER, (base, base + share * (found.pivot - base), found.pivot), strict=True))
+
+
+def _strut_places(subject: Subject, state: Position) -> dict[str, FloatArray]:
+    """Both pivots of each strut or spring, and the end of its body, in N positions, (N, 2) each."""
+    if not subject.struts:
+        return {}
+    _, rest = virtual_motion(subject.linkage, state.theta2, np.copysign(1.0, state.margins[0]))
+    found: dict[str, FloatArray] = {}
+    for number, part in enumerate(subject.struts):
+        first, last = part_ends(part, subject.linkage, rest)
+        length = np.maximum(np.hypot(*(last - first).T), 1e-300)
+        body = _SHARE * part.sizes[0].compressed if part.sense > 0 else 0.0
+        end = first + np.minimum(body / length, 1.0)[:, None] * (last - first)
+        found |= dict(zip(_strut(number), (first, end, last), strict=True))
+    return found
+
+
+def _strut(number: int) -> tuple[str, ...]:
+    """Names of the points of a strut."""
+    return tuple(f"strut {number} {name}" for name in _CYLINDER)
 
 
 class Shape(NamedTuple):
@@ -79,6 +101,14 @@ def shapes_of(subject: Subject, scene: Scene, placement: Placement, *, named: bo
         label = "cylinder" if named else None
         yield Shape((_BASE, _END), {"color": SCENE, "linewidth": 6.5, "label": label, **look})
         yield Shape((_BASE, _PIVOT), _dots("white", GROUND, 5, 5.5))
+    label = "strut or spring" if named else None
+    for number in range(len(subject.struts)):
+        first, end, last = _strut(number)
+        look = {"solid_capstyle": "butt", "zorder": 3.2}
+        yield Shape((end, last), {"color": _ROD, "linewidth": 2.0, **look})
+        yield Shape((first, end), {"color": SCENE, "linewidth": 4.5, "label": label, **look})
+        yield Shape((first, last), _dots("white", GROUND, 4, 5.5))
+        label = None
 
 
 def _dots(colour: str, edge: str, size: float, zorder: float) -> dict[str, Any]:

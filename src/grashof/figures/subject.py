@@ -9,6 +9,7 @@ from grashof.analysis import Verdict, verify
 from grashof.drawing.scene import Scene
 from grashof.problems import Cylinder, DynamicsSpec, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
+from grashof.problems.values.dynamics.struts import PartSpec
 from grashof.study.sweep import Sweep
 from grashof.synth import Candidate
 
@@ -64,6 +65,16 @@ class Subject:
     def cylinder(self) -> Cylinder | None:
         """The cylinder that drives it, if any."""
         return None if self.verdict is None else self.verdict.cylinder
+
+    @property
+    def struts(self) -> tuple[PartSpec, ...]:
+        """Its struts and straight springs, once they are placed."""
+        dynamics = self.spec.dynamics
+        of_file = None if dynamics is None else dynamics.effort
+        effort = of_file if self.verdict is None or self.verdict.effort is None else self.verdict.effort
+        if effort is None or not effort.is_placed:
+            return ()
+        return tuple(part for part in effort.parts if part.places)
 
     @property
     def sweep(self) -> Sweep:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import verify
-from grashof.page.designs import cylinder_data, legend, linkage_data, scene_of
+from grashof.page.designs import cylinder_data, legend, linkage_data, scene_of, strut_data
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import DRAWING, render
@@ -49,6 +49,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         if section.facts or section.tables or section.plots or section.notes
     ]
     facts = {fact.key: fact.value for section in report.sections for fact in section.facts}
+    effort = None if spec.dynamics is None else spec.dynamics.effort
     cylinder = cylinder_data(spec.cylinder, float(facts.get("cylinder_closed", 0.0)))
     data = {
         "name": spec.name,
@@ -61,6 +62,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
                 "turns": sweep.turns,
                 "direction": 1 if sweep.speed_rpm >= 0 else -1,
                 **cylinder,
+                **strut_data(spec.linkage, effort),
                 **targets,
             }
             for low, high in sweep.ranges
@@ -77,7 +79,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         spec=spec,
         report=report,
         dimensions=dimensions_text(spec),
-        links=legend([spec.linkage.mechanism], [spec.cylinder]),
+        links=legend([spec.linkage.mechanism], [spec.cylinder], [effort]),
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(fact for fact in report.facts if not fact.aside),
         aside=_facts(fact for fact in report.facts if fact.aside),

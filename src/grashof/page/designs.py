@@ -18,6 +18,7 @@ from grashof.analysis import (
     stated_loads,
     stated_masses,
 )
+from grashof.analysis.effort.parts import place_on
 from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.analysis.judge.wanted_torque import places_of
 from grashof.analysis.mechanism.mobility import range_index
@@ -28,6 +29,7 @@ from grashof.problems import Cylinder, DynamicsSpec, Linkage, Problem, Task, cat
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.dynamics.effort import EffortSpec
 from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
@@ -37,6 +39,7 @@ from grashof.synth.designs.table import Row
 _SAMPLES = 181
 STEPS = 180
 _ROUNDING = 1e-12  # of a turn
+_BODY = 0.9  # length of the body of a strut over its compressed length
 
 
 def scene_of(problem: Problem) -> dict[str, Any]:
@@ -130,8 +133,12 @@ def moves(design: Candidate) -> bool:
     return bool(np.isfinite(theta2).all()) and not np.isnan(driver_travel(design.linkage, theta2).low)
 
 
-def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
-    """Style and words of the links in drawings of some kinds of linkages, and of their cylinders.
+def legend(
+    kinds: Iterable[Mechanism],
+    cylinders: Iterable[Cylinder | None] = (),
+    efforts: Iterable[EffortSpec | None] = (),
+) -> list[tuple[str, str]]:
+    """Style and words of the links in drawings of some kinds of linkages, and of cylinders and struts.
 
     >>> from grashof.problems import SliderCrank
     >>> legend([SliderCrank.mechanism])
@@ -141,7 +148,9 @@ def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()
     for body in (body for kind in kinds for body in bodies_of(kind)):
         found.setdefault(body.role, []).append(body.words)
     words = [(style, ", ".join(dict.fromkeys(names))) for style, names in found.items()]
-    return words + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
+    words += [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
+    drawn = (part for effort in efforts if effort is not None and effort.is_placed for part in effort.parts)
+    return words + [("cylinder strut", "strut or spring")] * any(part.places for part in drawn)
 
 
 def linkage_data(linkage: Linkage) -> dict[str, Any]:
@@ -180,6 +189,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             "torque": torque,
             **_wanted(problem, design.verdict, ahead),
             **cylinder_data(design.verdict.cylinder, design.values["cylinder_closed"]),
+            **strut_data(linkage, design.verdict.effort),
             **_function(problem, linkage, design),
             "figures": {key: plain(value) for key, value in figures.items()},
         }
@@ -195,6 +205,21 @@ def cylinder_data(driven: Cylinder | None, closed: float) -> dict[str, Any]:
     if driven is None:
         return {}
     return {"cylinder": {**driven.stated, "closed": closed if np.isfinite(closed) else 0.0}}
+
+
+def strut_data(linkage: Linkage, effort: EffortSpec | None) -> dict[str, Any]:
+    """Placed struts and straight springs for the scripts; empty without one."""
+    parts = [] if effort is None or not effort.is_placed else [part for part in effort.parts if part.places]
+    found = [
+        {
+            "ends": [
+                dict(zip(("link", "at"), place_on(linkage, place), strict=True)) for place in part.places
+            ],
+            "body": _BODY * part.sizes[0].compressed if part.sense > 0 else 0.0,
+        }
+        for part in parts
+    ]
+    return {"struts": found} if found else {}
 
 
 def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str, Any]:

@@ -58,6 +58,7 @@ def search_page(
     columns = [Column(**each) for each in data["columns"]]
     drawn = list(dict.fromkeys(each.linkage.mechanism for each in designs))
     cylinders = [each.verdict.cylinder for each in designs]
+    efforts = [each.verdict.effort for each in designs]
     return render(
         "search.html",
         _SCRIPTS,
@@ -80,7 +81,7 @@ def search_page(
         regions=len({row["region"] for row in listed} - {""}) > 1,
         classes=sorted({row["grashof_class"] for row in rows}),
         mechanisms=list(dict.fromkeys(row.word for row in drawn)),
-        links=legend(drawn or [ROWS[word][0] for word in problem.mechanism], cylinders),
+        links=legend(drawn or [ROWS[word][0] for word in problem.mechanism], cylinders, efforts),
         counts=_counts(result.tally),
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
         record=record,

@@ -157,7 +157,7 @@ def _part_facts(study: LinkageStudy, case: EffortCase, index: int, figures: Effo
     number, part, unit = index + 1, case.spec.parts[index], study.spec.unit
     size = part.sizes[0]
     key, label = f"part_{number}", f"part {number}"
-    yield Fact(f"{key}_size", f"{label}: size", f"{part.count} x {part.kind} {size.name}".rstrip())
+    yield Fact(f"{key}_size", f"{label}: size", part.chosen)
     for end, place in enumerate(part.places, start=1):
         link, (u, v) = place_on(case.linkage, place)
         axes = ("x", "y") if link == 1 else ("u", "v")

@@ -306,8 +306,8 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
     """A user's own linkage with the verdict of the judge that every listed design has passed.
 
     Its kind need not be one of the problem's. It is driven by its own cylinder or, where the problem requires
-    one and it has none, by the best. ProblemError for different length units, or a kind that the task
-    excludes.
+    one and it has none, by the best; its struts likewise. ProblemError for different length units,
+    or a kind that the task excludes.
     """
     if problem.length_unit and spec.length_unit and problem.length_unit != spec.length_unit:
         raise ProblemError(
@@ -316,7 +316,8 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
         )
     of = problem.for_kind(spec.linkage.mechanism.word)
     verdict = driven_verdict(ScaledProblem.of(of), spec.linkage, known=spec.cylinder)
-    known = None if spec.dynamics is None else spec.dynamics.effort
+    stated = None if spec.dynamics is None else spec.dynamics.effort
+    known = () if stated is None else stated.parts
     return with_parts(Candidate(spec.linkage, verdict, of, 0, 0), known)
 
 

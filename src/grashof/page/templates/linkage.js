@@ -57,16 +57,33 @@ function pointSpeed(linkage, state) {
   return Number.isFinite(speed) ? speed : null;
 }
 
+// A point (u, v) of a link by its number, in a position; of the ground its global place.
+function pointAt(linkage, number, point, state) {
+  if (number === 1) return point;
+  const { dyads, links } = kindOf(linkage);
+  const slides = number > 3 && number % 2 === 0 && dyads[number / 2 - 2].kind === "RRP";
+  const angle = state[`theta${number}`] - (slides ? Math.PI / 2 : 0);
+  return carried({ at: state[links[number].points[0]], along: [Math.cos(angle), Math.sin(angle)] }, point);
+}
+
+// Where the body of a cylinder or strut ends, which is that long, on its way from one pivot to the other.
+function bodyEnd(from, to, long) {
+  const share = Math.min(long / (Math.hypot(to[0] - from[0], to[1] - from[1]) || 1), 1);
+  return from.map((place, k) => place + share * (to[k] - place));
+}
+
 // The two pivots of a cylinder, the end of its body and its mounting on its link, in a position.
 function cylinderAt(linkage, { on, base, point, closed }, state) {
-  const { dyads, links } = kindOf(linkage);
   const number = ["driver", "coupler", "output"].indexOf(on) + 2;
-  const [origin, joint = origin] = links[number].points.map((name) => state[name]);
-  const angle = state[`theta${number}`] - (number === 4 && dyads[0].kind === "RRP" ? Math.PI / 2 : 0);
-  const pivot = carried({ at: origin, along: [Math.cos(angle), Math.sin(angle)] }, point);
-  const length = Math.hypot(pivot[0] - base[0], pivot[1] - base[1]) || 1;
-  const share = Math.min((0.9 * closed) / length, 1);
-  return { base, end: base.map((place, k) => place + share * (pivot[k] - place)), pivot, bracket: [origin, pivot, joint] };
+  const [origin, joint = origin] = kindOf(linkage).links[number].points.map((name) => state[name]);
+  const pivot = pointAt(linkage, number, point, state);
+  return { base, end: bodyEnd(base, pivot, 0.9 * closed), pivot, bracket: [origin, pivot, joint] };
+}
+
+// Both pivots of a strut or spring in a position, and between them the end of its body.
+function strutAt(linkage, { ends, body }, state) {
+  const [from, to] = ends.map(({ link, at }) => pointAt(linkage, link, at, state));
+  return [from, bodyEnd(from, to, body), to];
 }
 
 // The driver angle, moved by whole turns into the travel or held at its ends.

@@ -35,6 +35,7 @@ function pointsToSee(scene, designs, close) {
       const state = positionOf(design.linkage, angle);
       points.push(...drawnPoints(design, state));
       if (design.cylinder) points.push(design.cylinder.base);
+      for (const strut of design.struts || []) points.push(...strutAt(design.linkage, strut, state));
     }
   }
   return points;

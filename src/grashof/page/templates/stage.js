@@ -290,6 +290,11 @@ class Stage {
       parts.piston = add(layer, "path", { class: "piston" });
       parts.ram = add(layer, "path", { class: "ram" });
     }
+    this.struts = (this.design.struts || []).map(() => ({
+      rod: add(layer, "path", { class: "piston" }),
+      body: add(layer, "path", { class: "ram strut" }),
+      pivots: [0, 1].map(() => add(layer, "circle", { r: 3, class: "joint" })),
+    }));
     for (const { name, style } of links) parts[name] = add(layer, "path", { class: style });
     parts.sense = add(layer, "path", { class: "sense" });
     for (const name of [...pivots, ...moving]) {
@@ -350,6 +355,12 @@ class Stage {
       set(parts.base, { cx: px(base[0]), cy: px(base[1]) });
       set(parts.pivot, { cx: px(pivot[0]), cy: px(pivot[1]) });
     }
+    this.struts.forEach(({ rod, body, pivots }, k) => {
+      const [from, end, to] = strutAt(linkage, this.design.struts[k], state).map(this.at);
+      set(rod, { d: through([end, to]) });
+      set(body, { d: through([from, end]) });
+      [from, to].forEach(([x, y], which) => set(pivots[which], { cx: px(x), cy: px(y) }));
+    });
     set(parts.sense, { d: this.senseArrow(places.o2, direction) });
     if (parts.hold) set(parts.hold, { d: through([places.o2, places.a]) });
   }

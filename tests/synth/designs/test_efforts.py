@@ -1,0 +1,71 @@
+"""Struts of designs: placed for each of a list, written with it, read back, and judged where known."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from grashof import load, synthesize
+from grashof.output.process import Interruption
+from grashof.output.run_files import write_run
+from grashof.problems import LinkageSpec, load_linkage_spec
+from grashof.problems.files.linkage_writing import linkage_toml
+from grashof.synth import Candidate, Result, place_parts
+from grashof.synth.designs.efforts import with_parts
+from grashof.wording.problem import judged_for, verdict_lines
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    return synthesize(load("kitchen-flap"), seed=0, starts=6, enough=1)
+
+
+@pytest.fixture(scope="module")
+def best(result: Result) -> Candidate:
+    assert result.best is not None
+    return result.best
+
+
+def test_each_design_has_its_struts(result: Result) -> None:
+    for design in result.candidates:
+        effort = design.verdict.effort
+        assert effort is not None
+        assert effort.is_placed
+        assert design.verdict.ok
+    row = result.to_frame().iloc[0]
+    assert row["part_sizes"].startswith("2 x gas ")
+    assert row["effort_deviation"] == 0
+
+
+def test_a_list_gives_the_struts_back(result: Result, best: Candidate, tmp_path: Path) -> None:
+    write_run(tmp_path / "run", result, {}, 0, Interruption())
+    listed = load_linkage_spec(str(tmp_path / "run" / "candidates.json") + "#1")
+    assert listed.dynamics is not None
+    assert best.verdict.effort is not None
+    effort = listed.dynamics.effort
+    assert effort is not None
+    assert effort.parts == best.verdict.effort.parts
+    assert place_parts(listed) == listed
+    (tmp_path / "flap.toml").write_text(linkage_toml(listed), encoding="utf-8")
+    shown = load_linkage_spec(str(tmp_path / "flap.toml"))
+    assert shown.dynamics == listed.dynamics
+    assert judged_for(load("kitchen-flap"), shown).verdict.effort == best.verdict.effort
+
+
+def test_a_known_strut_whose_stroke_ends_inside_the_travel_is_a_defect(best: Candidate) -> None:
+    assert best.verdict.effort is not None
+    (part,) = best.verdict.effort.parts
+    size = part.sizes[0]
+    for key, other in (
+        ("extended", replace(size, extended=size.extended - 60, stroke=size.stroke - 10)),
+        ("compressed", replace(size, stroke=20.0)),
+    ):
+        short = replace(part, sizes=(other,))
+        judged = with_parts(replace(best, verdict=replace(best.verdict, effort=None)), [short])
+        (defect, *_) = judged.verdict.defects
+        assert defect.requirement == "effort.parts[0]"
+        assert f"beyond {key}" in defect.what
+    dynamics = replace(best.problem.dynamics, effort=replace(best.verdict.effort, parts=(short,)))
+    spec = LinkageSpec(best.linkage, "flap", length_unit="mm", dynamics=dynamics)
+    lines = verdict_lines(judged_for(best.problem, spec), "flap")
+    assert any("missed: effort.parts[0]: the least length, beyond compressed, is " in line for line in lines)
