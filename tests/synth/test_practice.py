@@ -11,8 +11,9 @@ from grashof.synth import Candidate, Result
 
 QUICK = ["toggle-clamp"]
 SLOW = [
-    "bus-wiper", "container-lid", "drag-brace", "garage-door-track", "jewellery-box-lid", "kitchen-flap",
-    "robot-intake", "steering", "trunk-lid", "trunk-lid-struts", "twelve-timed",
+    "bicycle-suspension", "bus-wiper", "container-lid", "drag-brace", "excavator-bucket", "garage-door-track",
+    "jewellery-box-lid", "kitchen-flap", "robot-intake", "steering", "trunk-lid", "trunk-lid-struts",
+    "twelve-timed",
 ]  # fmt: skip
 
 
@@ -142,3 +143,45 @@ def test_the_trunk_lid_is_lifted_with_the_effort_that_is_wanted() -> None:
         worst = np.abs(effort - wanted)[:, angle <= 80].max()
         assert design.values["effort_deviation"] == pytest.approx(worst, abs=0.02)
         assert worst < 10
+
+
+def driven(design: Candidate, inputs: np.ndarray) -> np.ndarray:
+    """Directions of O4B by lengthenings of the cylinder on link 2, by laws of cosines, rad."""
+    linkage, jack, theta2 = design.linkage, design.verdict.cylinder, design.verdict.theta2
+    out, pivot = complex(*jack.base) - complex(*linkage.o2), complex(*jack.point)
+    first = abs(pivot * np.exp(1j * theta2[0]) - out)
+    opened = np.arccos(
+        (abs(out) ** 2 + abs(pivot) ** 2 - (first + inputs) ** 2) / (2 * abs(out) * abs(pivot))
+    )
+    a = complex(*linkage.o2) + linkage.r2 * np.exp(
+        1j * (theta2[0] + np.sign(theta2[-1] - theta2[0]) * (opened - opened[0]))
+    )
+    o4 = complex(*linkage.o4)
+    s = np.abs(o4 - a)
+    at_a = np.arccos((s**2 + linkage.r3**2 - linkage.r4**2) / (2 * s * linkage.r3))
+    b = a + linkage.r3 * (o4 - a) / s * np.exp(1j * linkage.assembly * at_a)
+    return np.unwrap(np.angle(b - o4))
+
+
+@pytest.mark.slow
+def test_the_bucket_turns_as_its_cylinder_lengthens() -> None:
+    for each in solved("excavator-bucket").candidates:
+        stroke = np.linspace(0, 300, 301)
+        theta4 = driven(each, stroke)
+        turned = np.degrees(np.abs(theta4 - theta4[0]))
+        assert turned[[0, 150, 300]] == pytest.approx([0, 62, 150], abs=1e-4)
+        rate = 1 / np.gradient(np.radians(turned), stroke)[1:-1]
+        assert rate.min() >= 45 * 0.999
+        assert rate.max() <= 300 * 1.001
+
+
+@pytest.mark.slow
+def test_the_suspension_is_progressive() -> None:
+    for each in solved("bicycle-suspension").candidates:
+        shock = np.linspace(0, 65, 6501)
+        theta4 = np.abs(driven(each, shock) - driven(each, shock)[0])
+        assert np.degrees(theta4[[0, 3250, 6500]]) == pytest.approx([0, 9.33, 19.55], abs=1e-4)
+        leverage = 440 * np.gradient(theta4, shock, edge_order=2)
+        assert 440 * np.radians(0.260) - 1e-4 <= leverage[0] <= 440 * np.radians(0.287) + 1e-4
+        assert 440 * np.radians(0.315) - 1e-4 <= leverage[-1] <= 440 * np.radians(0.345) + 1e-4
+        assert each.values["cylinder_closed"] == pytest.approx(165, abs=1e-5)

@@ -53,3 +53,26 @@ robot = load("robot-intake")
 best = synthesize(robot, enough=6).best
 plot_linkage(best, robot)
 print(robot.source)
+
+# %%
+# The rear suspension of a bicycle. The inputs are lengths of the shock, from compressed to long, and ``rate``
+# bounds the leverage ratio at both ends, so that the suspension becomes stiffer over its travel. The ratio is
+# the arm of the axle, 440 mm, times the turning of the swingarm for a millimetre of the shock.
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from grashof.analysis import function_curves
+
+bicycle = load("bicycle-suspension")
+best = synthesize(bicycle, enough=6).best
+plot_linkage(best, bicycle)
+print(bicycle.source)
+
+curves = function_curves(best.linkage, bicycle.task, best.verdict)
+ratio = 440 * np.gradient(np.abs(curves.generated), curves.inputs)
+figure, ax = plt.subplots()
+ax.plot(65 - curves.inputs, ratio)
+ax.set(xlabel="travel of the shock (mm)", ylabel="leverage ratio")
+assert 1.99 < ratio[0] < 2.21
+assert 2.41 < ratio[-1] < 2.66

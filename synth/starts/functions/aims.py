@@ -34,6 +34,7 @@ from grashof.synth.theory.functions.triangle import TriangleLimits, opening_slop
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
 DENSE = 1201  # places among which its extremes are looked for
+RATED = 9  # inputs at which the rate of a cylinder is limited
 INSIDE = 4e-8  # margin by which limits are kept, so that rounding misses none
 
 
@@ -76,8 +77,8 @@ class FunctionAims:
             shortest={Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(rotatability, 0),
             offset=None if offset is None else offset_rows(lengths, _over(offset, unit)),
             stroke=(-np.inf, np.inf) if wanted.stroke is None else _over(wanted.stroke, unit),
-            rates=None if task.rates is None else _rates(task, task.rates, unit),
-            triangle=_triangle(problem, wanted) if task.lengthens else None,
+            rates=_rates(task, wanted, unit),
+            triangle=_triangle(problem, wanted, unit if task.travels else None) if task.lengthens else None,
         )
         exact = problem.requirements.is_exact(task)
         return cls(task, problem, kind, wanted, limits, dict(zip(names, sizes, strict=True)), unit, exact)
@@ -164,11 +165,16 @@ class FunctionAims:
 
     def design(self, batch: Generators, driver: int) -> Linkage | DrivenLinkage | None:
         """The linkage of one generator, with its cylinder; None where that has no base within its limits."""
-        linkage = self.linkage(batch, driver)
         if not isinstance(batch, ByCylinder):
-            return linkage
-        found = placed_cylinder(batch, driver, linkage, self.kind.direction(self.wanted), self._base)
-        return None if found is None else DrivenLinkage(linkage, found)
+            return self.linkage(batch, driver)
+        found = list[DrivenLinkage]()
+        either = self.mirrored and self.problem.requirements.driver_sense == "either"
+        for sense in (driver, -driver) if either else (driver,):
+            linkage = self.linkage(batch, sense)
+            cylinder = placed_cylinder(batch, sense, linkage, self.kind.direction(self.wanted), self._base)
+            found += [] if cylinder is None else [DrivenLinkage(linkage, cylinder)]
+        # Of mirror images the one whose arm lies closer to O2A.
+        return min(found, key=lambda each: abs(np.arctan2(*each.cylinder.point[::-1])), default=None)
 
     def generator(self, design: Candidate) -> Generators | None:
         """The generator that a design is; None without the cylinder that should drive it."""
@@ -192,7 +198,10 @@ class FunctionAims:
             slope = opening_slopes(base, arm, length + rates[:, 0])[2]
             rates = np.column_stack([turned_by(triangle, rates[:, 0]), rates[:, 1:] / slope[:, None]])
         by_angle = task.by_turns(turned_by(triangle, task.inputs))
-        limits = replace(self.limits, span=by_angle.span[1], rates=rates, triangle=None)
+        caps = self.limits.caps.copy()
+        if self.triangle is not None:
+            caps[0, 1] = min(caps[0, 1], self.triangle.reach(triangle))
+        limits = replace(self.limits, caps=caps, span=by_angle.span[1], rates=rates, triangle=None)
         return replace(self, task=by_angle, kind=kind.by_angle, limits=limits)
 
     @property
@@ -220,14 +229,27 @@ def _caps(kind: type[Generators], sizes: Mapping[str, Limits], wanted: Requireme
     return caps - np.where(room > -INSIDE, np.clip(room, 0.0, INSIDE), INSIDE)  # none where a ratio is fixed
 
 
-def _rates(task: Task, rates: FloatArray, unit: float) -> FloatArray:
-    """Limits of rates from the beginning of the range, in units of the output, kept by a margin."""
-    at, low, high = (rates - [task.span[0], 0.0, 0.0]).T
+def _rates(task: Task, wanted: Requirements, unit: float) -> FloatArray | None:
+    """Limits of rates from the beginning of the range, in units of the output, kept by a margin.
+
+    With those of the cylinder's rate dL/dtheta4, whose inverse it is, at some inputs.
+    """
+    rows = [] if task.rates is None else [task.rates - [task.span[0], 0.0, 0.0]]
+    if wanted.cylinder_rate is not None and task.lengthens and not task.travels and task.link == "output":
+        slow, quick = (1 / edge if edge else np.inf for edge in wanted.cylinder_rate)
+        least, most = (quick, slow) if quick > 0 else (-slow, slow)
+        backwards = task.outputs[-1] < task.outputs[0]
+        low, high = (-most, -least) if backwards else (least, most)
+        at = np.linspace(0.0, task.span[1], RATED)
+        rows.append(np.column_stack([at, np.full(RATED, low), np.full(RATED, high)]))
+    if not rows:
+        return None
+    at, low, high = np.concatenate(rows).T
     inside = np.minimum(INSIDE * unit / (task.span[1] - task.span[0]), (high - low) / 2)
     return np.column_stack([at, (low + inside) / unit, (high - inside) / unit])
 
 
-def _triangle(problem: Problem, wanted: Requirements) -> TriangleLimits:
+def _triangle(problem: Problem, wanted: Requirements, travel: float | None) -> TriangleLimits:
     """Limits of the triangle of a problem's cylinder."""
     spec, stroke = problem.driver or CylinderSpec(), float(problem.task.inputs[-1])
     ground = FunctionGround.of(wanted)
@@ -239,6 +261,7 @@ def _triangle(problem: Problem, wanted: Requirements) -> TriangleLimits:
         closed=(max(closed[0], least * (1 + INSIDE)), closed[1]),
         lever=float(np.radians(wanted.cylinder_angle_min_deg or 0.0)) + INSIDE,
         ratio=wanted.link_ratio_max,
+        unit=ground.length if travel is None else travel,
     )
 
 

@@ -8,6 +8,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import through_by_cylinder
 from grashof.synth.starts.functions.pairs import NEAR, expected_score, through_pairs
+from grashof.synth.theory.functions.by_cylinder import ByCylinder
 from grashof.synth.theory.functions.fit import best_apart
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import stop_requested
@@ -34,9 +35,11 @@ def exact_functions(
     score = np.concatenate([each for each, _, _ in found])
     drivers = np.concatenate([np.full(len(batch), driver) for _, batch, driver in found])
     batch = aims.kind.joined([each for _, each, _ in found])
+    # Those under triangles near the best one are many, and would crowd out the others.
+    (linkages, room) = (batch.lengths_alone, 1) if isinstance(batch, ByCylinder) else (batch, 4)
     cell = NEAR
-    best = best_apart(batch, -score, cell)
-    while len(best) > 4 * most:  # a curve or surface of designs: farther apart
+    best = best_apart(linkages, -score, cell)
+    while len(best) > room * most:  # a curve or surface of designs: farther apart
         cell *= 1.5
-        best = best_apart(batch, -score, cell)
+        best = best_apart(linkages, -score, cell)
     return [(batch[k : k + 1], int(drivers[k])) for k in best[:most]]

@@ -46,6 +46,13 @@ class ByCylinder(Generators):
         return self.by_angle(self.shape[:, kept], self.assembly)
 
     @property
+    def lengths_alone(self) -> Generators:
+        """Their linkages, which begin at zero: those with other cylinders are alike."""
+        shape = self.itself_by_angle.shape
+        shape[:, -1] = 0.0
+        return self.by_angle(shape, self.assembly)
+
+    @property
     def triangle(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Base, arm and first length, each of shape (M, 1)."""
         base, arm, length = np.exp(self.shape[:, -1 - _OF_TRIANGLE : -1]).T[..., None]
@@ -75,9 +82,15 @@ class ByCylinder(Generators):
         rows = super().limited(limits)
         if limits.triangle is None:
             return rows
-        columns = slice(self.UNKNOWNS - 1 - _OF_TRIANGLE, self.UNKNOWNS - 1)
-        every = np.broadcast_to(np.eye(self.UNKNOWNS)[columns], (len(self), _OF_TRIANGLE, self.UNKNOWNS))
-        return joined_rows([rows, limits.triangle.rows(Dual(self.shape[:, columns], every))])
+        last, limited = self.UNKNOWNS - 1, limits.triangle
+        triangle, r2 = self._numbers(slice(last - _OF_TRIANGLE, last)), self._numbers(slice(1))
+        reach = r2 + float(np.log(limited.unit)) - triangle.column(1)  # the arm is no longer than r2
+        return joined_rows([rows, limited.rows(triangle), reach])
+
+    def _numbers(self, columns: slice) -> Dual:
+        """Some numbers of the shape with their derivatives."""
+        slope = np.eye(self.UNKNOWNS)[columns]
+        return Dual(self.shape[:, columns], np.broadcast_to(slope, (len(self), *slope.shape)))
 
     def linkage(self, wanted: Requirements, unit: float, driver: int) -> Any:
         return self.itself_by_angle.linkage(wanted, unit, driver)

@@ -46,6 +46,10 @@ class ShapeLimits:
 class Rows(Protocol):
     """Limits of the triangle of a cylinder, as `TriangleLimits`."""
 
+    @property
+    def unit(self) -> float:
+        """The unit of the lengths of the linkage."""
+
     def rows(self, logs: Dual) -> Dual:
         """Limits (M, L) with derivatives, zero or positive where they are kept."""
 

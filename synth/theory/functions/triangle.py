@@ -55,6 +55,11 @@ class TriangleLimits:
     closed: Limits  # as far as the ratio of lengths allows
     lever: float  # rad, least angle between cylinder and arm
     ratio: float  # greatest one of base and arm, either way
+    unit: float  # of the lengths of the linkage: r1, or the travel
+
+    def reach(self, logs: FloatArray) -> float:
+        """Greatest logarithm of the unit over r2 that leaves r2 no shorter than the arm, of logs (3,)."""
+        return float(np.log(self.unit) - logs[1])
 
     def rows(self, logs: Dual) -> Dual:
         """Limits (M, L), zero or positive where they are kept, of the logarithms of base, arm and length."""

@@ -53,7 +53,7 @@ def check(each: Candidate, problem: Problem, within: float) -> None:
     low, high = spec.closed or (0.0, np.inf)
     assert low * (1 - 1e-9) <= first <= high * (1 + 1e-9)
     assert first + problem.task.inputs[-1] <= spec.ratio_max * first * (1 + 1e-9)
-    for place, side in zip(jack.base, (spec.base.x, spec.base.y) if spec.base else ((), ()), strict=False):
+    for place, side in zip(jack.base, (spec.base.x, spec.base.y) if spec.base else [], strict=False):
         assert side[0] - 1e-6 <= place <= side[1] + 1e-6
 
 
