@@ -7,7 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from grashof.analysis.judge.meeting.function_start import Beginning, begins, moved_output, way_of
+from grashof.analysis.judge.meeting.function_start import (
+    Beginning,
+    begins,
+    begins_mirrored,
+    moved_output,
+    way_of,
+)
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.position import solve_position
@@ -38,7 +44,8 @@ def structural_error(
 
     None where the linkage cannot be assembled all over the range. Extremes are refined, the mean square is
     a Gauss-Legendre sum between samples and pairs. The output's zero is the mean of the errors at the pairs,
-    or the middle of the extremes where the greatest counts and pairs need not be met.
+    or the middle of the extremes where the greatest counts and pairs need not be met; of a mirrored linkage
+    it lies in the mirrored position.
     """
     senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
@@ -63,7 +70,9 @@ def structural_error(
         return np.stack([errors, -errors])
 
     (high, low), (high_at, low_at) = (each.tolist() for each in peaks(curves, [dense]))
-    if task.norm == "max" and not exact:
+    if task.mirror is not None:
+        zero = float(curves(np.array([task.mirror_turn]))[0, 0])
+    elif task.norm == "max" and not exact:
         zero = (high - low) / 2
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     coarse = np.unique(np.concatenate([task.driver_turns, np.linspace(*task.span, 25)]))
@@ -90,7 +99,10 @@ def met_as_function(
     senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
     limited = start is None and wanted.transmission_over is TransmissionOver.TASK
     least = float(np.radians(wanted.transmission_min_deg)) if limited else 0.0
-    begun = begins(linkage, task, exact, start, senses, least)
+    begun = None
+    if task.mirror is not None:
+        begun = begins_mirrored(linkage, task, senses) or begins_mirrored(linkage, task, (1, -1))
+    begun = begun or begins(linkage, task, exact, start, senses, least)
     # A linkage that misses a requirement from every start is reported where it errs least.
     begun = begun or begins(linkage, task, exact, start, senses) or begins(linkage, task, exact, start)
     met = begun or Beginning(start or 0.0, 1)

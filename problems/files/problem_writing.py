@@ -97,7 +97,9 @@ def _task(task: Task) -> dict[str, Any]:
 
 def _function(task: FunctionTask) -> dict[str, Any]:
     """A function's table: its pairs, or the law with its ranges."""
-    words = {"sense": task.sense, "norm": task.norm, "link": task.link}
+    words: dict[str, Any] = {"sense": task.sense, "norm": task.norm, "link": task.link}
+    if task.mirror is not None:
+        words["mirror_deg"] = degrees_of(np.array(task.mirror))
     law = task.law
     if law is None:
         output = {"output": task.outputs} if task.travels else {"output_deg": degrees_of(task.outputs)}

@@ -12,6 +12,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.finder import DesignFinder, Finder, StartFinder
 from grashof.synth.starts.functions.finder import Functions
+from grashof.synth.starts.functions.mirrored import MirroredFunctions
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
 from grashof.synth.starts.six_bars.dwells import Dwells
@@ -22,6 +23,7 @@ from grashof.synth.starts.strokes.tandem import TandemRockers
 # The first that suits a problem is taken; the last suits all.
 KINDS: tuple[type[StartFinder] | type[DesignFinder], ...] = (
     SixBars,
+    MirroredFunctions,
     Functions,
     LimitPositions,
     Dwells,

@@ -111,10 +111,14 @@ def kinds_of_names(wanted: Requirements) -> dict[str, Sequence[str]]:
     }
 
 
-def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
-    """Kinds of linkages whose output does not move as the function requires, a line each."""
+def functions_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
+    """Contradictions of a function with requirements, and kinds whose output moves otherwise, a line each."""
     if not task.has_output.any():
         return []
+    if task.mirror is not None and wanted.exact:
+        return ["requirements.exact is true; it must be false with function.mirror_deg"]
+    if task.mirror is not None and wanted.theta2_start_deg is not None:
+        return ["requirements.theta2_start_deg does not go with function.mirror_deg; remove one of them"]
     suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
     suited = tuple(word for word in suited if not task.impossible(word))
     others = [word for word in kinds if not task.impossible(word) and word not in suited]

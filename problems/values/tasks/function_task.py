@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal
 
@@ -10,76 +10,32 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values import checks
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
+from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
 from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.one_loop import FourBar
+from grashof.problems.values.tasks.function_checks import (
+    FEWEST,
+    INPUT,
+    MOST,
+    OUTPUT,
+    OUTPUT_DEG,
+    checked_pairs,
+    either,
+    finite_numbers,
+    refuse_beside,
+    refuse_missing,
+)
 from grashof.problems.values.tasks.function_law import FunctionLaw, chebyshev_spacing, lobatto_with_weights
-from grashof.problems.values.tasks.target_checks import deg_text
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
-
-INPUT, OUTPUT_DEG, OUTPUT = "input_deg", "output_deg", "output"  # keys of files
-FEWEST, MOST = 3, 100_000
-_LEAST_STEP = 1e-6  # rad, between two inputs
-_LEAST_OUTPUT = 1e-6  # rad, between the least and the greatest output
-
-
-def checked_pairs(
-    inputs: npt.ArrayLike, outputs: npt.ArrayLike, *, travels: bool
-) -> tuple[FloatArray, FloatArray]:
-    """Inputs (N,) in rad that grow from 0, and outputs (N,) in rad, or length of a slide that travels."""
-    key = OUTPUT if travels else OUTPUT_DEG
-    turned, output = finite_numbers(inputs, INPUT), finite_numbers(outputs, key)
-    if len(turned) != len(output):
-        angles = checks.counted(len(turned), "angle")
-        others = checks.counted(len(output), "travel" if travels else "angle")
-        raise ProblemError(f"function.{INPUT} has {angles}, function.{key} {others}; it must be as many")
-    if len(turned) < FEWEST:
-        raise ProblemError(f"function has {checks.counted(len(turned), 'pair')}; it must have three or more")
-    if len(turned) > MOST:
-        raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
-    for name, first in ((INPUT, turned[0]), (key, output[0])):
-        if first != 0:
-            given = deg_text(first) if name.endswith("_deg") else f"{first:.6g}"
-            raise ProblemError(f"function.{name}[0] is {given}; it must be 0, at the first pair")
-    for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
-        raise ProblemError(
-            f"function.{INPUT}[{index}] is {deg_text(turned[index])} after {deg_text(turned[index - 1])}; "
-            "inputs must grow (the driver may turn either way all the same)"
-        )
-    _refuse_turns(turned, INPUT)
-    if travels:
-        travel = float(np.ptp(output))
-        if not travel > 0:
-            raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
-        if travel > checks.GREATEST:
-            raise ProblemError(
-                f"function.{OUTPUT} covers {travel:.6g}; it must be at most {checks.GREATEST:g}"
-            )
-        return turned, output
-    _refuse_turns(output, OUTPUT_DEG)
-    if np.ptp(output) < _LEAST_OUTPUT:
-        raise ProblemError(f"function.{OUTPUT_DEG} does not move; the output must turn")
-    return turned, output
-
-
-def finite_numbers(values: Any, key: str) -> FloatArray:
-    """A list of finite numbers under a key, as an array."""
-    return checks.finite_list(values, f"function.{key}", "lengths" if key == OUTPUT else "angles")
-
-
-def _refuse_turns(angles: FloatArray, key: str) -> None:
-    if np.ptp(angles) > TURN * (1 + 1e-12):
-        raise ProblemError(
-            f"function.{key} covers {deg_text(np.ptp(angles))} deg; it must be at most one turn, 360"
-        )
-
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
 LINKS = ("output", "coupler")
 # Kinds whose link 3 is searched for: those of one loop whose link 4 turns, with which it can be exchanged.
 _OF_COUPLERS = tuple(word for word, row in ONE_LOOP.items() if row.loops[0].pinned)
+_MIRRORED = FourBar.mechanism.word
 LAW_PAIRS = 41  # of a law fitted over its full range
 MOST_EXACT, MOST_OF_SIX_BARS = 5, 9
 _SLIDING, _FOUR_BAR = 8, 9  # freedoms of slider kinds, and of a four-bar
@@ -114,6 +70,11 @@ class FunctionTask(Task):
     link : {"output", "coupler"}
         The link whose rotation the outputs are: the last one, or link 3, the coupler. Of slider-cranks and
         six-bars the coupler is not searched for.
+    mirror : float, rad, optional
+        Driver rotation from the first pair, or the beginning of a law, at which the linkage is its own mirror
+        image about the line square
+        to the ground link in its middle, r4 = r2 and the coupler parallel to the ground, as the steering of a
+        car straight ahead; the output has no error there. Of four-bars whose pairs need not be met exactly.
 
     Raises
     ------
@@ -149,6 +110,7 @@ class FunctionTask(Task):
     length: float
     travels: bool
     link: str
+    mirror: float | None
 
     def __init__(
         self,
@@ -161,6 +123,7 @@ class FunctionTask(Task):
         length: float = 1.0,
         travels: bool = False,
         link: str = "output",
+        mirror: float | None = None,
     ) -> None:
         checks.one_of(link, "function.link", LINKS)
         if travels and link != "output":
@@ -180,12 +143,15 @@ class FunctionTask(Task):
             length=checks.positive_number(length, "function.length"),
             travels=bool(travels),
             link=link,
+            mirror=mirror,
         )
+        if mirror is not None:
+            set_fields(self, mirror=_mirrored(self, mirror))
 
     @classmethod
     def of_law(
         cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms",
-        link: str = "output",
+        link: str = "output", mirror: float | None = None,
     ) -> FunctionTask:  # fmt: skip
         """The task of a law over its full range.
 
@@ -195,6 +161,8 @@ class FunctionTask(Task):
         pairs : int, optional
             Number of pairs, at Chebyshev spacing; by default as many as fit the full range.
         sense, norm, link : str
+        mirror : float, rad, optional
+            From the beginning of the range.
         """
         if pairs is None:
             places = lobatto_with_weights(LAW_PAIRS)[0]
@@ -205,7 +173,9 @@ class FunctionTask(Task):
         turned = law.input_range * places
         output = law.output(turned)
         turned, output = turned - turned[0], output - output[0]
-        return cls(turned, output, sense=sense, norm=norm, law=law, travels=law.travels, link=link)
+        return cls(
+            turned, output, sense=sense, norm=norm, law=law, travels=law.travels, link=link, mirror=mirror
+        )
 
     @classmethod
     def from_degrees(
@@ -225,6 +195,7 @@ class FunctionTask(Task):
         sense: str = "given",
         norm: str = "rms",
         link: str = "output",
+        mirror_deg: float | None = None,
     ) -> FunctionTask:
         """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
 
@@ -253,6 +224,10 @@ class FunctionTask(Task):
             Instead, travel of a slide over the range of y.
         pairs : int, optional
             Pairs that are met exactly, at Chebyshev's spacing; without them the law is fitted over its range.
+        mirror_deg : float, deg, optional
+            Driver rotation from the first pair, or the beginning of a law, at which the linkage is its own
+            mirror image about the line square to the ground link in its middle: as the steering of a car
+            straight ahead. The output has no error there.
         sampled : array_like, optional
             Of a sampled law, as Grashof saves one that was a function in Python: y at Chebyshev-Lobatto
             points of `x`.
@@ -272,18 +247,20 @@ class FunctionTask(Task):
             "output_range": output_range,
         }
         both = ("output_range", output_range_deg, output_range)
-        travels = _either(OUTPUT, output_deg, output) or _either(*both)
+        travels = either(OUTPUT, output_deg, output) or either(*both)
+        mirror = None if mirror_deg is None else checks.finite_number(mirror_deg, "function.mirror_deg")
+        mirror = None if mirror is None else float(np.radians(mirror))
         if law is None:
             others = {"exponent": exponent, "pairs": pairs, "sampled": sampled}
-            _refuse_beside(stated | others, "goes with function.law only")
-            _refuse_missing(table, OUTPUT, travels)
+            refuse_beside(stated | others, "goes with function.law only")
+            refuse_missing(table, OUTPUT, travels)
             turned = np.radians(finite_numbers(input_deg, INPUT))
             key, given = (OUTPUT, output) if travels else (OUTPUT_DEG, output_deg)
             outputs = finite_numbers(given, key)
             outputs = outputs if travels else np.radians(outputs)
-            return cls(turned, outputs, sense=sense, norm=norm, travels=travels, link=link)
-        _refuse_beside(table, "does not go with function.law; give pairs or a law")
-        _refuse_missing(stated, "output_range", travels)
+            return cls(turned, outputs, sense=sense, norm=norm, travels=travels, link=link, mirror=mirror)
+        refuse_beside(table, "does not go with function.law; give pairs or a law")
+        refuse_missing(stated, "output_range", travels)
         key = "output_range" if travels else "output_range_deg"
         ranges = [checks.finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
         over = float(np.radians(ranges[0])), ranges[1] if travels else float(np.radians(ranges[1]))
@@ -292,7 +269,7 @@ class FunctionTask(Task):
         else:
             known = None if sampled is None else np.asarray(sampled, dtype=np.float64)
             made = FunctionLaw(law, stated["x"], *over, exponent=exponent, samples=known, travels=travels)
-        return cls.of_law(made, pairs=pairs, sense=sense, norm=norm, link=link)
+        return cls.of_law(made, pairs=pairs, sense=sense, norm=norm, link=link, mirror=mirror)
 
     def __len__(self) -> int:
         return len(self.inputs)
@@ -336,6 +313,8 @@ class FunctionTask(Task):
         An inverted slider-crank, whose output is also a rotation, has one free length less. Of six-bars up to
         nine.
         """
+        if self.mirror is not None:
+            return False
         if freedoms > _FOUR_BAR:
             return len(self) <= MOST_OF_SIX_BARS
         return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
@@ -348,6 +327,8 @@ class FunctionTask(Task):
         >>> FunctionTask([0, 1, 2], [0, 1, 3], link="coupler").impossible("slider-crank")
         'function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank'
         """
+        if self.mirror is not None and word != _MIRRORED:
+            return f"function.mirror_deg is stated; mechanism must be {_MIRRORED}"
         if self.link == "output" or word in _OF_COUPLERS:
             return Task.impossible(self, word)
         return f'function.link is "{self.link}"; mechanism must be {listing(_OF_COUPLERS)}'
@@ -355,24 +336,19 @@ class FunctionTask(Task):
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> FunctionTask:  # noqa: ARG002
         """Some of the pairs, from the first of them on."""
         turned, output = self.inputs[index], self.outputs[index]
-        return replace(self, inputs=turned - turned[0], outputs=output - output[0], law=None)
+        mirror = None if self.mirror is None else self.mirror_turn - turned[0]
+        return replace(self, inputs=turned - turned[0], outputs=output - output[0], law=None, mirror=mirror)
 
 
-def _either(key: str, angles: object, travel: object) -> bool:
-    """Whether the output is given as travel; `ProblemError` if it is given as rotation, too."""
-    if angles is not None and travel is not None:
-        both = f"function.{key}_deg does not go with function.{key}"
-        raise ProblemError(f"{both}; an output turns or slides, give one of them")
-    return travel is not None
-
-
-def _refuse_beside(values: Mapping[str, object], why: str) -> None:
-    for name in (name for name, value in values.items() if value is not None):
-        raise ProblemError(f"function.{name} {why}")
-
-
-def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) -> None:
-    other = f"{output}_deg" if travels else output
-    missing = [name for name, value in values.items() if value is None and name != other]
-    if missing:
-        raise ProblemError("\n".join(f"function.{name} is missing" for name in missing))
+def _mirrored(task: FunctionTask, turned: float) -> float:
+    """The driver rotation of the mirrored position, checked."""
+    where = "function.mirror_deg"
+    low, high = 0.0, float(np.degrees(task.span[1] - task.span[0]))
+    given = float(np.degrees(checks.finite_number(turned, where)))
+    for name, value, usual in (("travels", task.travels, False), ("link", task.link, "output")):
+        if value != usual:
+            what = "a travel of a slide" if name == "travels" else f'function.link = "{value}"'
+            raise ProblemError(f"{where} does not go with {what}; it is of links 2 and 4")
+    if not low < given < high:
+        raise ProblemError(f"{where} is {given:.6g}; it must lie within the range, {low:.6g} to {high:.6g}")
+    return float(turned)

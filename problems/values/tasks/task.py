@@ -58,6 +58,8 @@ class Task(ReadOnly, ABC):
     travels: bool = False
     #: Whether the opposite output is accepted, too: "given" or "either".
     sense: str = "given"
+    #: Driver rotation from the beginning of the range, rad, at which the linkage is its own mirror image.
+    mirror: float | None = None
     #: The error to minimise where outputs are not met exactly: "rms" or "max".
     norm: str = "rms"
     #: The law of the outputs; without one the cubic spline through them is wanted.
@@ -335,14 +337,7 @@ class Task(ReadOnly, ABC):
         return "structural_error_max" if self.travels else "structural_error_max_deg"
 
     def shown(self, output: float, length_unit: str) -> str:
-        """An output or its error, with its unit, as people read it.
-
-        Examples
-        --------
-        >>> from grashof.problems import FunctionTask
-        >>> FunctionTask([0, 1, 2], [0, 1, 3], travels=True).shown(0.25, "mm")
-        '0.25 mm'
-        """
+        """An output or its error, with its unit, as people read it."""
         unit = length_unit if self.travels else self.counted_in
         return f"{self.counted_in.shown * output:.3g} {unit}".strip()
 
@@ -358,6 +353,11 @@ class Task(ReadOnly, ABC):
             return 0.0, float(self.driver_turns[-1])
         before = float(self._before)
         return 0.0 - before, self.law.input_range - before
+
+    @property
+    def mirror_turn(self) -> float:
+        """Driver rotation from the first target to the mirrored position, rad; NaN without."""
+        return np.nan if self.mirror is None else self.mirror + self.span[0]
 
     @property
     def beyond(self) -> tuple[float, float]:

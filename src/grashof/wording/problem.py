@@ -300,6 +300,8 @@ def _function(task: Task, unit: str) -> str:
         said = f"function {law.name}{power}, {ranges}{chosen}"
     given = "along the slide" if task.travels else "in the sense of the driver"
     sense = given if task.sense == "given" else "in either sense"
+    if task.mirror is not None:
+        sense += f"; its own mirror image at {np.degrees(task.mirror):g} deg"
     return f"{said}; {moved} {sense}"
 
 

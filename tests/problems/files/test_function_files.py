@@ -20,6 +20,8 @@ LAW = {**RANGES, "law": "power", "exponent": 1.5}
     [
         {**PAIRS, "sense": "either", "norm": "max"},
         {**PAIRS, "link": "coupler"},
+        {**PAIRS, "mirror_deg": 45.0, "norm": "max"},
+        {**LAW, "pairs": 7, "mirror_deg": 30.0},
         {**LAW, "pairs": 5, "link": "coupler"},
         LAW,
         {**LAW, "pairs": 5},
