@@ -74,8 +74,8 @@ def goals(problem: Problem) -> str:
 
 
 def summary(problem: Problem) -> list[str]:
-    """A problem in a few lines, with the requirements as they will be applied."""
-    task = problem.task
+    """A problem in a few lines, with its requirements but for limits that are the default ones."""
+    task, usual = problem.task, Requirements()
     wanted = problem.requirements.resolved(task.size, scale_free=task.scale_free)
     unit = f" {problem.length_unit}" if problem.length_unit else ""
     lines = [
@@ -88,6 +88,7 @@ def summary(problem: Problem) -> list[str]:
             f"  {_limit(problem, wanted, name)}"
             for name, limit in wanted.limited.items()
             if limit.quantity.key not in task.without
+            and getattr(problem.requirements, name) != getattr(usual, name)
         ),
     ]
     if wanted.keep_out:
