@@ -11,6 +11,7 @@ import numpy as np
 from grashof.analysis.judge.meeting.function_start import (
     Beginning,
     begins,
+    begins_mirrored,
     moved_output,
     output_rate,
     way_of,
@@ -47,7 +48,8 @@ def structural_error(
 
     None where the linkage cannot be assembled all over the range. Extremes are refined, the mean square is
     a Gauss-Legendre sum between samples and pairs. The output's zero is the mean of the errors at the pairs,
-    or the middle of the extremes where the greatest counts and pairs need not be met.
+    or the middle of the extremes where the greatest counts and pairs need not be met; of a mirrored linkage
+    it lies in the mirrored position.
     """
     senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
@@ -72,7 +74,9 @@ def structural_error(
         return np.stack([errors, -errors])
 
     (high, low), (high_at, low_at) = (each.tolist() for each in peaks(curves, [dense]))
-    if task.norm == "max" and not exact:
+    if task.mirror is not None:
+        zero = float(curves(np.array([task.mirror_turn]))[0, 0])
+    elif task.norm == "max" and not exact:
         zero = (high - low) / 2
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     coarse = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, 25)]))
@@ -106,7 +110,9 @@ def met_as_function(
     by = input_of(linkage, task, cylinder)
     begun = None
     if by is not None:
-        begun = begins(linkage, task, by, exact, start, senses, least)
+        if task.mirror is not None:
+            begun = begins_mirrored(linkage, task, by, senses) or begins_mirrored(linkage, task, by, (1, -1))
+        begun = begun or begins(linkage, task, by, exact, start, senses, least)
         # A linkage that misses a requirement from every start is reported where it errs least.
         begun = begun or begins(linkage, task, by, exact, start, senses)
         begun = begun or begins(linkage, task, by, exact, start)

@@ -11,6 +11,7 @@ import numpy as np
 from grashof.analysis.curves.coupler_curve import closed_length
 from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.dwell_output import DwellFigures, least_band
+from grashof.analysis.judge.meeting.function_start import off_mirror
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
@@ -34,6 +35,7 @@ from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.tandem_task import LINKS
 
 Driven: TypeAlias = Cylinder | None  # that drives the linkage
+MIRRORED = 1e-9  # sizes: by which B may miss the mirror image of A
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 
@@ -115,8 +117,19 @@ def _as_function(linkage: Linkage, task: Task, wanted: Requirements, cylinder: D
     targets, motion, figures, defects = met_as_function(linkage, task, wanted, cylinder)
     theta2 = np.array([motion.start, *targets.theta2, motion.end])
     assembly = np.full(len(theta2), int(linkage.assembly))
+    if task.mirror is not None:
+        defects = (*defects, *_mirror_missed(linkage, task, targets, motion))
     covered = figures is not None
     return Met(targets, motion, theta2, assembly, covered=covered, figures=figures or {}, defects=defects)
+
+
+def _mirror_missed(linkage: Linkage, task: Task, targets: Targets, motion: TaskMotion) -> Iterator[Defect]:
+    """The miss of a mirrored position."""
+    sense = np.sign(motion.end - motion.start)
+    away = off_mirror(linkage, float(targets.theta2[0] + sense * task.mirror_turn))
+    if not (miss := away / task.size) <= MIRRORED:
+        what = "the distance of B from the mirror image of A"
+        yield Defect("mirror_deg", what, away, f"up to {MIRRORED * task.size:.2g}", miss)
 
 
 def _between_limits(linkage: Linkage, task: Task, wanted: Requirements, _: Driven = None) -> Met:

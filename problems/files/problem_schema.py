@@ -28,7 +28,7 @@ from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements
-from grashof.problems.values.requirements.target_limits import TargetLimits
+from grashof.problems.values.requirements.target_limits import TOGGLE, TargetLimits
 from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
 
@@ -86,7 +86,11 @@ _BY_KIND = {
 }
 
 
-_AT_TARGETS = {"targets": list[int], **dict.fromkeys(("a", "b", "instant_centre"), (Place | None, None))}
+_AT_TARGETS = {
+    "targets": list[int],
+    "links": (list[str], [*TOGGLE]),
+    **dict.fromkeys(("a", "b", "instant_centre"), (Place | None, None)),
+}
 _OF_TARGETS = {
     **dict.fromkeys(("past_deg", "coupler_angle_deg", "coupler_rate"), (Pair | None, None)),
     "distances": (dict[str, Direction] | None, None),

@@ -120,6 +120,8 @@ def _function(task: FunctionTask) -> dict[str, Any]:
         by_angle = task.lengthens and not task.travels
         rates = [degrees_of(each) if by_angle else task.rate_unit * each for each in limits]
         words["rate"] = np.column_stack([at if task.lengthens else degrees_of(at), *rates])
+    if task.mirror is not None:
+        words["mirror_deg"] = degrees_of(np.array(task.mirror))
     law = task.law
     if law is None:
         output = {"output": task.outputs} if task.travels else {"output_deg": degrees_of(task.outputs)}

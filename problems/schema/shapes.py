@@ -27,6 +27,7 @@ from grashof.problems.values.requirements.distances import EITHER_WAY
 from grashof.problems.values.requirements.link_ratios import PAIR
 from grashof.problems.values.requirements.objective import GOALS
 from grashof.problems.values.requirements.requirement_checks import MAY_KEEP_OUT
+from grashof.problems.values.requirements.target_limits import TOGGLE
 
 Shape = dict[str, Any]
 "A part of a JSON Schema."
@@ -67,6 +68,7 @@ _BY_HAND: Mapping[tuple[type[Table], str], Shape] = MappingProxyType(
         (CylinderTable, "on"): _some_of(CARRIERS),
         (ObjectiveTable, "maximise"): {"anyOf": [{"enum": [*GOALS]}, {"$ref": "#/$defs/WeightsTable"}]},
         (RequirementsTable, "keep_out_for"): _some_of(MAY_KEEP_OUT),
+        (TargetTable, "links"): _some_of(TOGGLE),
         (RequirementsTable, "link_ratios"): _limits_by_name(PAIR.pattern),
         **{
             (table, "distances"): _limits_by_name(f"({'|'.join(EITHER_WAY)})")

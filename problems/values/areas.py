@@ -18,6 +18,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, counted, each_checked, finite_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 
+_STEPS = 400  # along a line, at least, at which its depth is measured
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
 
 
@@ -36,6 +37,20 @@ def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
     joined = shapely.union_all(np.array([shapely.Polygon(corners) for corners in areas]))
     shapely.prepare(joined)
     return joined
+
+
+def depth_of_line(areas: Sequence[FloatArray], corners: FloatArray) -> float:
+    """How deep a closed line through corners (M, 2), or a single point, reaches into areas; 0 outside.
+
+    >>> square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    >>> depth_of_line([square], np.array([[1.0, 2.0]])), depth_of_line([square], square + [3.0, 0.0])
+    (1.0, 1.0)
+    """
+    area = solid(areas)
+    line = shapely.Point(corners[0]) if len(corners) == 1 else shapely.LinearRing(corners)
+    inside = shapely.segmentize(shapely.intersection(area, line), line.length / _STEPS or 1.0)
+    points = shapely.points(shapely.get_coordinates(inside))
+    return float(np.max(shapely.distance(shapely.boundary(area), points), initial=0.0))
 
 
 def shape(corners: FloatArray, *, is_line: bool) -> shapely.Geometry:

@@ -181,9 +181,17 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         for box, joint in ((single.a, at.a[:, [k]]), (single.b, at.b[:, [k]])):
             within(joint.real, (box or Box()).x, aim.middle.real)
             within(joint.imag, (box or Box()).y, aim.middle.imag)
+        for name, limits in single.named.get("distances", {}).items():
+            within(apart(at, name)[:, [k]], limits)
+        if single.coupler_angle_deg is not None:
+            low, high = np.radians(single.coupler_angle_deg).tolist()
+            off = np.angle((at.b - at.a)[:, [k]] * np.exp(-0.5j * (low + high)))
+            rows.append(np.abs(off) - (high - low) / 2 + INSIDE)
         if single.past_deg is not None:
             low, high = (aim.size * np.radians(single.past_deg)).tolist()
             within(past_toggle(at, k), (low, high))
+    for name, limits in wanted.ranges("distances").items():
+        within(apart(at, name), limits)
     for arm in (at.coupler, at.coupler - at.r3):
         within(np.abs(arm), wanted.coupler_arms or (0.0, np.inf))
     for name in ("o2", "o4", "a", "b"):
@@ -198,6 +206,12 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)
         rows += [-step, step.sum(axis=1, keepdims=True) - TURN + INSIDE]
     return np.concatenate(rows, axis=1)
+
+
+def apart(at: Places, name: str) -> FloatArray:
+    """Distance of two points at the targets, (B, N)."""
+    one, other = (getattr(at, point) for point in name.split("-"))
+    return np.asarray(np.abs(one - other))
 
 
 def past_toggle(at: Places, k: int) -> FloatArray:
@@ -244,7 +258,7 @@ def slopes(aim: Aim, at: Places) -> FloatArray:
     The judge takes the driver angles that come nearest. Where the transmission angle at the ends or the
     places of A and B are limited, a design may not gain by others.
     """
-    boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box()) or bool(aim.wanted.at)
+    boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box()) or bool(aim.wanted.at or aim.wanted.distances)
     if aim.over_turn and not boxed and aim.potential is None:
         return np.empty((len(at.p), 0))
     coupler, output, driver = at.b - at.a, at.b - at.o4, at.a - at.o2

@@ -114,7 +114,28 @@ def _place(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict
     return {"at": (TargetLimits(targets=[1], a=Box(x=(least, np.inf))),)}
 
 
-LIMITS = {"link_ratios": _ratio, "toggle": _toggle, "place at a target": _place}
+def _distance(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+    """Distances of A from O4 that are greater than the least of the best design."""
+    a = solve_position(linkage, verdict.theta2).a
+    least = float(np.hypot(*(a - linkage.o4).T).min())  # type: ignore[attr-defined]
+    return {"distances": {"a-o4": (least * rng.uniform(1.05, 1.2), 1e6)}}
+
+
+def _direction(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+    """A direction of the coupler at the middle target beyond that of the best design."""
+    middle = len(verdict.theta2) // 2
+    theta3 = solve_position(linkage, verdict.theta2[middle], verdict.assembly[middle]).theta3
+    low = float(np.degrees(np.angle(np.exp(1j * theta3))) + rng.uniform(3, 10))
+    return {"at": (TargetLimits(targets=[middle + 1], coupler_angle_deg=(low, low + 50)),)}
+
+
+LIMITS = {
+    "link_ratios": _ratio,
+    "toggle": _toggle,
+    "place at a target": _place,
+    "distances": _distance,
+    "coupler at a target": _direction,
+}
 
 
 def beside_independent(name: str, count: int, seed: int) -> Iterator[str]:

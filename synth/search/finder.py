@@ -32,6 +32,10 @@ def finder_for(scaled: ScaledProblem) -> StartFinder | DesignFinder:
 
         return SixBars(scaled)
     if task.has_output.any():
+        if task.mirror is not None:
+            from grashof.synth.starts.functions.mirrored import MirroredFunctions
+
+            return MirroredFunctions(scaled)
         from grashof.synth.starts.functions.finder import Functions
 
         return Functions(scaled)

@@ -18,8 +18,10 @@ from grashof.analysis.judge.meeting.two_outputs import TwoOutputs
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder, Linkage, Objective, Problem, SixBar
+from grashof.problems.values.linkages.mechanism import Dyad, DyadKind, Mechanism
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.second_loop import SecondLoop
 from grashof.synth.programme.start import DrivenLinkage, Round, Start, Terms
 from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.search.attempt import Attempt, Outcome
@@ -29,11 +31,11 @@ from grashof.synth.search.ledger import Chunk, Tally
 TYPES: dict[str, Any] = {
     each.__name__: each
     for each in (
-        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DrivenLinkage, DwellFigures,
-        Objective, Round, Start, Tally, Terms, TwoOutputs, Verdict,
+        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DrivenLinkage, Dyad, DwellFigures,
+        Mechanism, Objective, Round, SecondLoop, Start, Tally, Terms, TwoOutputs, Verdict,
     )
 }  # fmt: skip
-WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
+WORDS: dict[str, Any] = {each.__name__: each for each in (DyadKind, GrashofClass, Outcome)}
 # Known from elsewhere, or measured again.
 _LEFT_OUT = {"Candidate": {"problem", "values"}, "Start": {"kind"}}
 # NumPy's kinds of numbers: an integer is a real number, too, but True is not.

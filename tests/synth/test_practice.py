@@ -7,6 +7,7 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position
+from grashof.problems import FourBar
 from grashof.synth import Candidate, Result
 
 QUICK = ["toggle-clamp"]
@@ -80,20 +81,67 @@ def test_the_garage_door_hangs_on_its_track() -> None:
         assert (np.diff(b.real) < 0).all()
 
 
+def inner_and_outer(linkage: FourBar, straight: float, inner: float) -> tuple[float, float]:
+    """Turns of the outer wheel in a left and in a right lock, deg, where the inner one turns so far.
+
+    By circles about A, or B, and the other king pin; `straight` is the driver angle straight ahead, rad.
+    """
+    o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
+    a = o2 + linkage.r2 * np.exp(1j * straight)
+    b = o2 + o4 - np.conj(a - o2)  # its image: the ground lies along x
+    turns = []
+    for own, other, pin, far, sense in ((a, b, o2, o4, 1), (b, a, o4, o2, -1)):
+        held = pin + (own - pin) * np.exp(1j * sense * np.radians(inner))
+        way = far - held
+        along = (abs(way) ** 2 + linkage.r3**2 - linkage.r4**2) / (2 * abs(way))
+        both = [held + (along + s * 1j * np.sqrt(linkage.r3**2 - along**2)) * way / abs(way) for s in (1, -1)]
+        moved = [np.degrees(np.angle((end - far) / (other - far))) * sense for end in both]
+        turns.append(min(moved, key=lambda turn: abs(turn - inner)))
+    return turns[0], turns[1]
+
+
 @pytest.mark.slow
-def test_the_steering_is_a_symmetric_trapezium_that_keeps_to_the_law_of_ackermann() -> None:
+def test_both_locks_of_the_steering_are_alike_and_keep_nearly_to_the_law_of_ackermann() -> None:
+    angles = np.linspace(1, 40, 40)
+    wanted = np.degrees(np.arctan(1 / (1 / np.tan(np.radians(angles)) + 0.5)))
+    best = solved("steering").best
     for each in solved("steering").candidates:
-        linkage = each.linkage
-        assert linkage.r2 == pytest.approx(linkage.r4, abs=1e-6)
-        out = np.cos(each.verdict.theta2[1]) * linkage.r2  # of A from the king pin, straight ahead
-        assert linkage.r3 == pytest.approx(1250 - 2 * out, abs=1e-3)
-        o2, a, b, o4 = poses(each)
-        left, right = (np.degrees(np.unwrap(np.angle(arm))) for arm in (a - o2, b - o4))
-        to_left = left[0] - left[1], right[0] - right[1]  # inner and outer wheel
-        to_right = right[1] - right[2], left[1] - left[2]
-        for turned in (to_left, to_right):
-            inner, outer = 1 / np.tan(np.radians(turned))
-            assert outer - inner == pytest.approx(0.5, abs=1e-4)
+        linkage, verdict = each.linkage, each.verdict
+        assert linkage.r4 == pytest.approx(linkage.r2, rel=1e-12)
+        straight = float(verdict.theta2[load("steering").task.inputs.tolist().index(np.radians(40))])
+        left, right = np.array([inner_and_outer(linkage, straight, turn) for turn in angles]).T
+        np.testing.assert_allclose(left, right, rtol=0, atol=1e-9)
+        if each is best:
+            assert np.abs(left - wanted).max() < 0.79
+
+
+@pytest.mark.slow
+def test_no_symmetric_trapezium_steers_better() -> None:
+    """Against a differential evolution over length and angle of the arms, on geometry of its own."""
+    from scipy.interpolate import CubicSpline
+    from scipy.optimize import differential_evolution
+
+    task = load("steering").task
+    dense = np.concatenate([[np.radians(40)], np.linspace(0, task.inputs[-1], 401)])
+    wanted = CubicSpline(task.inputs, task.outputs)(dense)
+
+    def error(place: np.ndarray) -> float:
+        a = place[0] * np.exp(1j * place[1])
+        r3 = 1250 - 2 * a.real
+        moved = a * np.exp(-1j * (dense - dense[0]))
+        way = 1250 - moved
+        along = (np.abs(way) ** 2 + r3**2 - place[0] ** 2) / (2 * np.abs(way))
+        if not 900 <= r3 <= 1240 or (np.abs(along) > r3).any():
+            return 10.0
+        b = moved + (along - 1j * np.sign(a.imag) * -np.sqrt(r3**2 - along**2)) * way / np.abs(way)
+        off = -np.angle((b - 1250) / (b[0] - 1250)) - (wanted - wanted[0])
+        return float(np.degrees(np.abs(off).max()))
+
+    found = [
+        differential_evolution(error, [(120, 200), ends], seed=1, tol=1e-9, popsize=20).fun
+        for ends in ((0, np.pi), (-np.pi, 0))
+    ]
+    assert np.degrees(solved("steering").best.verdict.structural_error_max) < 1.002 * min(found) + 0.001
 
 
 def effort_of(design: Candidate) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

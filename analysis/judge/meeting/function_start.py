@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -23,6 +24,7 @@ _CLOSE = 1e-10  # rad, between starts: no closer
 _SAMPLES, _FINE = 97, 385  # of the range, where the greatest error decides: in valleys, and at their bottoms
 _SAME = 1 + 1e-9
 _NOTHING = 1e-12  # rad, or shares of the travel: starts whose errors differ by less are as good
+_SYMMETRIC = 1e-6  # share of r1 by which a linkage may be off its mirror image to be placed by it
 _ROUNDING = 1e-9  # rad, of driver ranges and transmission angles
 
 
@@ -101,6 +103,40 @@ def begins(
     alike = least * _SAME + _NOTHING * task.output_unit
     _, direction, start = next(one for one in found if one[0] <= alike)
     return Beginning(start, direction, by)
+
+
+def begins_mirrored(linkage: Linkage, task: Task, by: Input, directions: tuple[int, ...]) -> Beginning | None:
+    """Where a four-bar begins that is its own mirror image at a driver rotation; None where it nowhere is.
+
+    There the coupler is parallel to the ground: r1 = 2 r2 cos(theta2 - theta1) + r3, or less r3. Of several
+    such positions of its assembly that in which it errs least.
+    """
+    found: list[tuple[float, int, float]] = []
+    search = _Search(linkage, task, by, task.norm == "rms", 0.0)
+    r1, r2, r3, _ = (float(length) for length in linkage.lengths)
+    for along in (r3, -r3):
+        cosine = (r1 - along) / (2 * r2)
+        if not abs(cosine) <= 1:
+            continue
+        for sign, direction in product((1, -1), directions):
+            at = float(linkage.theta1) + sign * float(np.arccos(cosine))
+            if off_mirror(linkage, at) <= _SYMMETRIC * r1:
+                start = at - direction * task.mirror_turn
+                value = float(search.value(start, direction))
+                found += [(value, direction, start)] if np.isfinite(value) else []
+    if not found:
+        return None
+    _, direction, start = min(found)
+    return Beginning(start, direction, by)
+
+
+def off_mirror(linkage: Linkage, theta2: float) -> float:
+    """Distance of B from the mirror image of A about the line square to the ground link in its middle."""
+    state = solve_position(linkage, theta2)
+    o2, o4, a, b = (complex(*place) for place in (linkage.o2, linkage.o4, state.a, state.b))
+    ahead = (o4 - o2) / abs(o4 - o2)
+    image = o4 - ahead * ((a - o2) / ahead).conjugate()
+    return float(np.nan_to_num(abs(b - image), nan=np.inf))
 
 
 @dataclass(frozen=True, slots=True)

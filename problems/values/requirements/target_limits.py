@@ -26,6 +26,9 @@ from grashof.problems.values.value_bases import check_fields
 NARROWEST, FARTHEST = 0.1, 45.0  # deg, of the range of `past_deg`
 
 
+TOGGLE = ("driver", "coupler")  # links of `past_deg`
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TargetLimits:
     """Limits at some of the targets, besides those of `Requirements`.
@@ -40,6 +43,10 @@ class TargetLimits:
         Where the centre of rotation of the coupler may lie there, the intersection of O2A and O4B.
     distances : mapping of str to float or tuple of float, optional
         Distances there, as those of `Requirements`.
+    links : pair of str
+        The links of `past_deg`: "driver" and "coupler". Coupler and output in line are a dead position of the
+        driver, which no task motion passes; exchange O2 and O4, A and B, and the linkage works from its other
+        side.
     past_deg : tuple of float, deg, optional
         Angle of driver and coupler past toggle there (O2, A and B in line), (lo, hi), from -45 to 45, as in a
         clamp or brace. Positive where the motion from the first target, of the first one that back from the
@@ -65,6 +72,7 @@ class TargetLimits:
     """
 
     targets: Sequence[int]
+    links: Sequence[str] = TOGGLE
     a: Box | None = None
     b: Box | None = None
     instant_centre: Box | None = None
@@ -130,6 +138,19 @@ def _targets(values: Sequence[int], where: str) -> tuple[int, ...]:
     return tuple(checks.each_checked(values, where, _target))
 
 
+def _links(names: Sequence[str], where: str) -> tuple[str, ...]:
+    given = sorted(map(str, names)) if isinstance(names, (list, tuple)) else []
+    if given == sorted(TOGGLE):
+        return TOGGLE
+    if given == ["coupler", "output"]:
+        raise ProblemError(
+            f"{where} are coupler and output, whose toggle is a dead position of the driver; "
+            "exchange o2 and o4, a and b, so that the output becomes the driver, and state "
+            '["driver", "coupler"]'
+        )
+    raise wrong_value(where, names, '["driver", "coupler"]')
+
+
 def _target(number: int, where: str) -> int:
     return checks.whole_number(number, 1, where)
 
@@ -153,6 +174,7 @@ def _number(low: float, high: float) -> Callable[[Any, str], float | None]:
 
 _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "targets": _targets,
+    "links": _links,
     "a": _box,
     "b": _box,
     "instant_centre": _box,
@@ -163,6 +185,6 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "transmission_min_deg": _number(0.0, 90.0),
     "mechanical_advantage_min": _number(0.0, 1e6),
 }
-LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name != "targets")
+LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name not in ("targets", "links"))
 # Points and lengths without which a limit has no meaning; of those not named here r3 and r4.
 _NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}, "coupler_angle_deg": {"a"}, "coupler_rate": {"a"}}

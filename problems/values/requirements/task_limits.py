@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import product
+
+import numpy as np
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
@@ -26,6 +29,7 @@ from grashof.problems.values.requirements.requirements import LIMITS, Requiremen
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
 
+_MAY_MISS = 10.0  # tolerances by which a target that counts as met may be missed here
 _SWINGS = (
     'requirements.rotatability is "double-crank", whose output does not swing; '
     "with stroke it must be full-crank or crank-rocker"
@@ -62,10 +66,12 @@ def without_meaning(task: Task, wanted: Requirements, used: Mapping[str, Quantit
 
 def not_of_kinds(task: Task, given: Sequence[str], having: Mapping[str, Sequence[str]]) -> list[str]:
     """Keys, with the kinds of linkages that have them, that none of the given kinds has, a line each."""
-    if task.in_plane or task.has_output.any():  # six-bars with a slide are for other tasks
+    if task.in_plane or task.has_output.any():  # six-bars with a slide are for other tasks, not those with D
         slides = set(SLIDING)
         having = {
-            where: [kind for kind in kinds if kind in ONE_LOOP or not slides.issuperset(kinds)]
+            where: kinds
+            if where == "requirements.d"
+            else [kind for kind in kinds if kind in ONE_LOOP or not slides.issuperset(kinds)]
             for where, kinds in having.items()
         }
     return [
@@ -94,13 +100,36 @@ def requirements_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -
         for name in directions
         if isinstance(getattr(wanted, name), tuple) and not task.has_position.any()
     ]
-    for number, limits in enumerate(wanted.at, 1):
+    for number, limits in enumerate(wanted.at):
         wrong += limits.wrong(task, kinds, f"requirements.at[{number}]")
     if wanted.at and not wanted.order:
         wrong.append("requirements.order is false; it must be true with requirements.at")
     if wanted.keep_out and "body" in wanted.keep_out_for and task.body is None:
         wrong.append(f"{task.kind}.body is missing; requirements.keep_out_for has body")
-    return wrong
+    return wrong + (stated_inside(task, wanted) if wanted.keep_out and wanted.is_exact(task) else [])
+
+
+def stated_inside(task: Task, wanted: Requirements) -> list[str]:
+    """Targets that put P, or the body, into an area that it keeps out of, a line each."""
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    from grashof.problems.values.areas import depth_of_line
+
+    found, body = list[str](), np.zeros((0, 2)) if task.body is None else task.body
+    parts = {"p": "P"} if {"p", "links"} & set(wanted.keep_out_for) and "p" not in task.without else {}
+    parts |= {"body": "the body"} if len(body) and "body" in wanted.keep_out_for else {}
+    rows = np.column_stack([task.positions, task.angles])
+    for k, part in product(range(len(task)), parts):
+        x, y, angle = np.nan_to_num(rows[k]).tolist() if part == "p" else rows[k].tolist()
+        if not task.has_position[k] or np.isnan(angle):
+            continue
+        corners = body if part == "body" else np.zeros((1, 2))
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        deep = depth_of_line(wanted.keep_out, corners @ turn + np.array([x, y]))
+        reach = task.size + float(np.abs(corners).max())
+        if deep > _MAY_MISS * wanted.tolerance * reach:
+            where = f"{task.kind}.{task.target}s[{k}]"
+            found.append(f"requirements.keep_out: {where} puts {parts[part]} {deep:.3g} deep inside an area")
+    return found
 
 
 def kinds_of_names(wanted: Requirements) -> dict[str, Sequence[str]]:
@@ -112,10 +141,14 @@ def kinds_of_names(wanted: Requirements) -> dict[str, Sequence[str]]:
     }
 
 
-def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
-    """Kinds of linkages whose output does not move as the function requires, a line each."""
+def functions_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
+    """Contradictions of a function with requirements, and kinds whose output moves otherwise, a line each."""
     if not task.has_output.any():
         return []
+    if task.mirror is not None and wanted.exact:
+        return ["requirements.exact is true; it must be false with function.mirror_deg"]
+    if task.mirror is not None and wanted.theta2_start_deg is not None:
+        return ["requirements.theta2_start_deg does not go with function.mirror_deg; remove one of them"]
     suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
     suited = tuple(word for word in suited if not task.impossible(word))
     others = [word for word in kinds if not task.impossible(word) and word not in suited]

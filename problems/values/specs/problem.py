@@ -176,7 +176,7 @@ class Problem(ReadOnly):
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.lengths_wrong(self.task, self.requirements, self.driver)
-        wrong += task_limits.functions_wrong(self.task, self.mechanism)
+        wrong += task_limits.functions_wrong(self.task, self.requirements, self.mechanism)
         wrong += task_limits.dwells_wrong(self.task, self.requirements)
         wrong += task_limits.tandems_wrong(self.task, self.requirements)
         wrong += [line for kind in self.mechanism if (line := self.task.impossible(kind))]

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from grashof.problems.values import checks
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.tasks.generated_output import GeneratedOutput
 from grashof.problems.values.tasks.target_checks import deg_text
 
 # Keys of files.
@@ -150,3 +151,20 @@ def refuse_missing(values: Mapping[str, object], *unused: str) -> None:
     missing = [name for name, value in values.items() if value is None and name not in unused]
     if missing:
         raise ProblemError("\n".join(f"function.{name} is missing" for name in missing))
+
+
+def checked_mirror(task: GeneratedOutput, turned: float) -> float:
+    """The driver rotation of the mirrored position of a function, rad."""
+    where = "function.mirror_deg"
+    others = (
+        (task.travels, "a travel of a slide"),
+        (task.link != "output", f'function.link = "{task.link}"'),
+        (task.lengthens, f"function.{INPUT}"),
+    )
+    for stated, what in others:
+        if stated:
+            raise ProblemError(f"{where} does not go with {what}; it is of links 2 and 4")
+    given, last = float(np.degrees(checks.finite_number(turned, where))), float(np.degrees(np.ptp(task.span)))
+    if not 0 < given < last:
+        raise ProblemError(f"{where} is {given:.6g}; it must lie within the range, 0 to {last:.6g}")
+    return float(turned)

@@ -13,6 +13,7 @@ from grashof.problems.values import checks
 from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
 from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.tasks.function_law import FunctionLaw, chebyshev_spacing, lobatto_with_weights
 from grashof.problems.values.tasks.function_pairs import (
     FEWEST,
@@ -21,6 +22,7 @@ from grashof.problems.values.tasks.function_pairs import (
     MOST,
     OUTPUT,
     OUTPUT_DEG,
+    checked_mirror,
     checked_pairs,
     checked_rates,
     either,
@@ -37,6 +39,7 @@ NORMS = ("rms", "max")
 LINKS = ("output", "coupler")
 # Kinds whose link 3 is searched for: those of one loop whose link 4 turns, with which it can be exchanged.
 _OF_COUPLERS = tuple(word for word, row in ONE_LOOP.items() if row.loops[0].pinned)
+_MIRRORED = FourBar.mechanism.word
 LAW_PAIRS = 41  # of a law fitted over its full range
 MOST_EXACT, MOST_OF_SIX_BARS = 5, 9
 OF_TRIANGLE = 3  # free lengths of a cylinder on the driver: base and arm from O2, and its first length
@@ -80,6 +83,11 @@ class FunctionTask(Task):
     rates : array_like, shape (R, 3), optional
         Limits of the leverage ratio d(output)/d(input): rows of input, least and greatest value, with the
         signs of the outputs.
+    mirror : float, rad, optional
+        Driver rotation from the first pair, or the beginning of a law, at which the linkage is its own mirror
+        image about the line square to the ground link in its middle, r4 = r2 and the coupler parallel to the
+        ground, as the steering of a car straight ahead; the output has no error there. Of four-bars whose
+        pairs need not be met exactly.
 
     Raises
     ------
@@ -117,6 +125,7 @@ class FunctionTask(Task):
     link: str
     lengthens: bool
     rates: FloatArray | None
+    mirror: float | None
 
     def __init__(
         self,
@@ -131,6 +140,7 @@ class FunctionTask(Task):
         link: str = "output",
         lengthens: bool = False,
         rates: npt.ArrayLike | None = None,
+        mirror: float | None = None,
     ) -> None:
         checks.one_of(link, "function.link", LINKS)
         if travels and link != "output":
@@ -151,15 +161,18 @@ class FunctionTask(Task):
             travels=bool(travels),
             link=link,
             lengthens=bool(lengthens),
+            mirror=mirror,
         )
         if rates is not None:
             rates = frozen_array(checked_rates(rates, given, self.rate_unit, lengthens=self.lengthens))
         set_fields(self, rates=rates)
+        if mirror is not None:
+            set_fields(self, mirror=checked_mirror(self, mirror))
 
     @classmethod
     def of_law(
         cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms",
-        link: str = "output", rates: npt.ArrayLike | None = None,
+        link: str = "output", rates: npt.ArrayLike | None = None, mirror: float | None = None,
     ) -> FunctionTask:  # fmt: skip
         """The task of a law over its full range.
 
@@ -171,6 +184,8 @@ class FunctionTask(Task):
         sense, norm, link : str
         rates : array_like, shape (R, 3), optional
             Their inputs count from the first pair.
+        mirror : float, rad, optional
+            From the beginning of the range.
         """
         if pairs is None:
             places = lobatto_with_weights(LAW_PAIRS)[0]
@@ -181,7 +196,7 @@ class FunctionTask(Task):
         turned = law.input_range * places
         output = law.output(turned)
         turned, output = turned - turned[0], output - output[0]
-        words = {"sense": sense, "norm": norm, "link": link}
+        words = {"sense": sense, "norm": norm, "link": link, "mirror": mirror}
         return cls(turned, output, law=law, travels=law.travels, rates=rates, **words)  # type: ignore[arg-type]
 
     @classmethod
@@ -204,6 +219,7 @@ class FunctionTask(Task):
         norm: str = "rms",
         link: str = "output",
         rate: npt.ArrayLike | None = None,
+        mirror_deg: float | None = None,
     ) -> FunctionTask:
         """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
 
@@ -260,7 +276,9 @@ class FunctionTask(Task):
         slides = "an output turns or slides"
         travels = either(OUTPUT, output_deg, output, slides)
         travels = either("output_range", output_range_deg, output_range, slides) or travels
-        words = {"sense": sense, "norm": norm, "link": link}
+        mirror = None if mirror_deg is None else checks.finite_number(mirror_deg, "function.mirror_deg")
+        mirror = None if mirror is None else float(np.radians(mirror))
+        words: dict[str, Any] = {"sense": sense, "norm": norm, "link": link, "mirror": mirror}
         if law is None:
             others = {"exponent": exponent, "pairs": pairs, "sampled": sampled}
             refuse_beside(stated | others, "goes with function.law only")
@@ -272,7 +290,7 @@ class FunctionTask(Task):
                 for values in [finite_numbers(table[key], key)]
             )
             rates = None if rate is None else rates_inside(rate, travels=travels, lengthens=lengthens)
-            return cls(given, outputs, travels=travels, lengthens=lengthens, rates=rates, **words)  # type: ignore[arg-type]
+            return cls(given, outputs, travels=travels, lengthens=lengthens, rates=rates, **words)
         refuse_beside(table, "does not go with function.law; give pairs or a law")
         key = "output_range" if travels else "output_range_deg"
         refuse_missing(stated, *({"output_range", "output_range_deg"} - {key}))
@@ -332,6 +350,8 @@ class FunctionTask(Task):
         An inverted slider-crank, whose output is also a rotation, has one free length less. Of six-bars up to
         nine. A cylinder adds three lengths, and so three pairs.
         """
+        if self.mirror is not None:
+            return False
         if freedoms > _FOUR_BAR:
             return len(self) <= MOST_OF_SIX_BARS
         most = MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1
@@ -350,6 +370,8 @@ class FunctionTask(Task):
                 f"mechanism is {word}; with function.{INPUT}, a cylinder's length, "
                 f"it must be {listing(list(ONE_LOOP))}"
             )
+        if self.mirror is not None and word != _MIRRORED:
+            return f"function.mirror_deg is stated; mechanism must be {_MIRRORED}"
         if self.link == "output" or word in _OF_COUPLERS:
             return Task.impossible(self, word)
         return f'function.link is "{self.link}"; mechanism must be {listing(_OF_COUPLERS)}'
@@ -362,4 +384,6 @@ class FunctionTask(Task):
             shifted = self.rates - [given[0], 0.0, 0.0]
             within = (shifted[:, 0] >= 0) & (shifted[:, 0] <= given[-1] - given[0])
             rates = shifted[within] if within.any() else None
-        return replace(self, inputs=given - given[0], outputs=output - output[0], law=None, rates=rates)
+        mirror = None if self.mirror is None else self.mirror_turn - given[0]
+        parts = {"inputs": given - given[0], "outputs": output - output[0], "law": None}
+        return replace(self, **parts, rates=rates, mirror=mirror)

@@ -36,6 +36,8 @@ class GeneratedOutput:
     lengthens: bool = False
     #: Limits of d(output)/d(input): rows of input, least and greatest value, shape (R, 3).
     rates: FloatArray | None = None
+    #: Driver rotation from the beginning of the range, rad, at which the linkage is its own mirror image.
+    mirror: float | None = None
 
     def __len__(self) -> int:
         """Number of targets."""
@@ -142,6 +144,11 @@ class GeneratedOutput:
             return 0.0, float(self.inputs[-1])
         before = float(self._before)
         return 0.0 - before, self.law.input_range - before
+
+    @property
+    def mirror_turn(self) -> float:
+        """Driver rotation from the first target to the mirrored position, rad; NaN without."""
+        return np.nan if self.mirror is None else self.mirror + self.span[0]
 
     @property
     def beyond(self) -> tuple[float, float]:

@@ -80,8 +80,8 @@ def goals(problem: Problem) -> str:
 
 
 def summary(problem: Problem) -> list[str]:
-    """A problem in a few lines, with the requirements as they will be applied."""
-    task = problem.task
+    """A problem in a few lines, with its requirements but for limits that are the default ones."""
+    task, usual = problem.task, Requirements()
     wanted = problem.requirements.resolved(task.size, scale_free=task.scale_free)
     unit = f" {problem.length_unit}" if problem.length_unit else ""
     lines = [
@@ -94,6 +94,7 @@ def summary(problem: Problem) -> list[str]:
             f"  {_limit(problem, wanted, name)}"
             for name, limit in wanted.limited.items()
             if limit.quantity.key not in task.without
+            and getattr(problem.requirements, name) != getattr(usual, name)
         ),
     ]
     if wanted.keep_out:
@@ -265,6 +266,8 @@ def _function(task: Task, unit: str) -> str:
         said = f"function {law.name}{power}, {ranges}{chosen}"
     given = "along the slide" if task.travels else "in the sense of the driver"
     sense = given if task.sense == "given" else "in either sense"
+    if task.mirror is not None:
+        sense += f"; its own mirror image at {np.degrees(task.mirror):g} deg"
     return f"{said}; {moved} {sense}"
 
 

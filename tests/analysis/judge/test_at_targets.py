@@ -130,7 +130,7 @@ def test_limits_at_targets_that_cannot_be_are_refused_in_a_line() -> None:
     late, first = (TargetLimits(targets=[number], past_deg=(2, 5)) for number in (4, 1))
     lever = TargetLimits(targets=[1], mechanical_advantage_min=2)
     for at, order, kind, line in (
-        (late, True, "four-bar", r"at\[1\].targets has 4; the last target is 3"),
+        (late, True, "four-bar", r"at\[0\].targets has 4; the last target is 3"),
         (first, False, "four-bar", "order is false; it must be true"),
         (lever, True, "slider-crank", "mechanical_advantage_min"),
     ):
@@ -141,6 +141,12 @@ def test_limits_at_targets_that_cannot_be_are_refused_in_a_line() -> None:
         ({"targets": [0], "past_deg": (1, 2)}, "targets"),
         ({"targets": [], "past_deg": (1, 2)}, "a list of numbers of targets"),
         ({"targets": [1]}, "targets have no limit"),
+        ({"targets": [1], "links": ["coupler", "driver"]}, "targets have no limit"),
+        (
+            {"targets": [1], "links": ["coupler", "output"], "past_deg": (2, 5)},
+            "links are coupler and output, whose toggle is a dead position of the driver; exchange o2 and o4",
+        ),
+        ({"targets": [1], "links": "driver", "past_deg": (2, 5)}, r"links is 'driver'; it must be \["),
         ({"targets": [1], "past_deg": (3, 3)}, "at least 0.1 apart"),
         ({"targets": [1], "past_deg": (30, 50)}, "past_deg"),
     ):

@@ -21,6 +21,8 @@ LENGTHS = {"input": [0, 20.5, 41, 60], "output_deg": [0, 12, 31, 80]}
     [
         {**PAIRS, "sense": "either", "norm": "max"},
         {**PAIRS, "link": "coupler"},
+        {**PAIRS, "mirror_deg": 45.0, "norm": "max"},
+        {**LAW, "pairs": 7, "mirror_deg": 30.0},
         {**LAW, "pairs": 5, "link": "coupler"},
         LAW,
         {**LAW, "pairs": 5},

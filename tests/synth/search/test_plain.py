@@ -1,6 +1,7 @@
 """Values written as JSON come back to the last bit."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,8 +9,10 @@ import pytest
 from grashof import load
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Problem
+from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import to_frame
+from grashof.synth.programme.second_loop import SecondLoop
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt, attempt
 from grashof.synth.search.finder import finder_for
@@ -93,3 +96,9 @@ def test_searches_of_slider_kinds_come_back(mechanism: str) -> None:
     again = restored(json.loads(json.dumps(plain(one))), problem)
     assert json.dumps(plain(again)) == json.dumps(plain(one))
     assert again.candidate.linkage == one.candidate.linkage
+
+
+def test_second_loops_of_six_bars_come_back() -> None:
+    row = replace(next(row for row in MECHANISMS if row.word == "stephenson-3"), carries=6)
+    loop = SecondLoop(row, 0.5 + 1j, 2 - 1j, (1.5, 2.5), 0.25j, -1, (0.1, 0.2, np.pi))
+    assert back(loop) == loop
