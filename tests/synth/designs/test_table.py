@@ -33,7 +33,7 @@ move_offset, move_c_u, move_c_v, move_d_u, move_d_v, move_offset_2,
 torque_deviation, torque_deviation_max, cylinder_on, cylinder_base_x,
 cylinder_base_y, cylinder_u, cylinder_v, cylinder_closed, cylinder_stroke, cylinder_angle_min_deg,
 cylinder_force_max, cylinder_rate_start, cylinder_rate_end, cylinder_rate_min, cylinder_rate_max,
-part_sizes, coupler_angle_min_deg, coupler_angle_max_deg, coupler_rate_min, coupler_rate_max,
+coupler_angle_min_deg, coupler_angle_max_deg, coupler_rate_min, coupler_rate_max, part_sizes,
 effort_deviation
 """
 FIRST = [name.strip() for name in CONTRACT.split(",")]
