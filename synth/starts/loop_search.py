@@ -291,7 +291,7 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
             cost, missed, by_unknowns = _joined(target, at, residual, slope, weight, error)
             if target.torque is None:
                 return cost, missed, by_unknowns
-            misses, by_misses = torque_residuals(target, at, batch.assembly, batch.direction)
+            misses, by_misses = torque_residuals(target, at, batch)
             return (
                 cost + (misses**2).sum(axis=1),
                 np.concatenate([missed, misses], axis=1),

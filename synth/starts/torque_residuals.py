@@ -7,26 +7,21 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.vector import Vector
-from grashof.synth.starts.closed_loop import SearchTargets
+from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.limit_residuals import Placement
 
 OPEN = 1e3  # reference torques: the deviation where a linkage has no torque
 Residuals = tuple[FloatArray, FloatArray]  # (n, K), and their derivatives by the unknowns, (n, K, M)
 
 
-def torque_residuals(
-    target: SearchTargets, at: Placement, assembly: FloatArray, direction: FloatArray
-) -> Residuals:
-    """Weighted drive torques minus the wanted ones, sizes, of linkages where they stand.
-
-    Their assembly (n, N) and the sense of their drivers (n,).
-    """
+def torque_residuals(target: SearchTargets, at: Placement, batch: Batch) -> Residuals:
+    """Weighted drive torques minus the wanted ones, sizes, of a batch where it stands."""
     curve, (count, _, width) = target.torque, at.by_theta3.shape
     if curve is None:
         return np.zeros((count, 0)), np.zeros((count, 0, width))
-    lengths, along = [getattr(at, name) for name in ("r1", "r2", "r3", "r4")], at.normal
+    along = at.normal
     arm = Vector(at.ap.dot(along), along.cross(at.ap))
-    theta2, sense = at.theta1 + at.relative.theta2, direction[:, None]
+    theta2, sense = at.theta1 + at.relative.theta2, batch.direction[:, None]
     first = theta2.column(0)
     last = first + TURN * sense if target.closed else theta2.column(-1)
     at_targets = None
@@ -35,9 +30,9 @@ def torque_residuals(
         at_targets = Dual(theta2.value[:, index], theta2.slope[:, index])
     driver = curve.moment(np.array(curve.places), first, last, sense, at_targets)
     ground = target.kind.dyad.ground(at)
-    instant = target.kind.instant(at.o2, ground, lengths, arm, assembly[:, :1], driver)
+    instant = target.kind.instant(at.o2, ground, at.lengths, arm, batch.assembly[:, :1], driver)
     miss: Dual = curve.miss(instant, sense, np.array(curve.torques))
-    root = curve.weight * np.sqrt(target.count / len(curve.places))
+    root = curve.counted(target.count)
     shape = count, len(curve.places)
     value = np.broadcast_to(miss.value, shape)
     closed = np.isfinite(value) & (np.abs(value) < OPEN)
