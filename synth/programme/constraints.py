@@ -337,7 +337,7 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
 def misses_at_start(scaled: ScaledProblem, start: Start) -> FloatArray:
     """Drive torques of a start minus the wanted ones (K,), reference torques."""
     ways = np.array([start.theta2]), np.array([start.direction]), np.array([start.assembly])
-    (found,) = torque_misses(scaled, start.points[None], *ways)
+    found: FloatArray = torque_misses(scaled, start.points[None], *ways)[0]
     return found
 
 

@@ -45,14 +45,16 @@ def symbolic_misses(form: Form, x: Unknowns, places: Positions) -> ca.SX:
         at_target = x.theta2[round(place)] if curve.over == "target" else None
         at = instant(curve.moment(place, *ends, at_target))
         found.append(curve.miss(at, x.direction, torque))
-    return ca.vertcat(*found)
+    misses: ca.SX = ca.vertcat(*found)
+    return misses
 
 
 def squared_deviation(form: Form, x: Unknowns, places: Positions) -> ca.SX:
     """What the weight of a wanted torque adds to the squares, sizes squared."""
     if form.torque is None or not form.torque.weight:
         return ca.SX(0)
-    return ca.sumsqr(form.torque.counted(form.targets) * symbolic_misses(form, x, places))
+    square: ca.SX = ca.sumsqr(form.torque.counted(form.targets) * symbolic_misses(form, x, places))
+    return square
 
 
 def cost_of_deviations(

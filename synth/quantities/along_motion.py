@@ -99,10 +99,10 @@ def torque_misses(
     curve = WantedCurve.of(scaled.problem)
     if curve is None:
         raise TypeError("a problem without a wanted torque has no deviation from it")
-    *ends, sense = _ends(scaled, theta2, direction)
+    first, last, sense = _ends(scaled, theta2, direction)
     at_targets = theta2[:, curve.targets] if curve.over == "target" else None
     with np.errstate(all="ignore"):
-        driver = curve.moment(np.array(curve.places), *ends, sense, at_targets)
+        driver = curve.moment(np.array(curve.places), first, last, sense, at_targets)
         at = _instants(scaled, points, assembly, driver)
         misses: FloatArray = np.nan_to_num(curve.miss(at, sense, np.array(curve.torques)), nan=np.inf)
     return misses
