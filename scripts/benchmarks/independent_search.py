@@ -6,8 +6,7 @@ improves many random starts at once, with differences for derivatives. Sequentia
 (SLSQP of scipy) brings the best within their limits, and `grashof.analysis.judge.verify` judges them.
 
 It is a plain reference. It covers free and timed points met in order, and poses with position and angle, but
-neither areas kept out nor user constraints. A torque that is wanted over shares of the motion is the slope of
-a potential (`Potential`), by differences, of linkages that move slowly.
+neither areas kept out nor user constraints.
 """
 
 from dataclasses import dataclass, replace
@@ -15,8 +14,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from convex_sides import sides
-from potential import Potential
+from independent_geometry import HAIR, elbow, past_toggle, sides
 from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, verify
@@ -26,8 +24,6 @@ from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntAr
 STARTS, POLISHED = 800, 40
 # Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
-TURNED = 1e-4  # rad: step of the slope of a potential
-HAIR = 1e-12  # added to the length of a line, which may be zero
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
 
@@ -47,10 +43,10 @@ class Aim:
     turned: bool  # the targets have angles
     timed: bool  # the driver rotations are prescribed
     over_turn: bool  # the transmission angle counts over the full turn
-    potential: Potential | None = None  # whose slope is wanted
+    potential: Any = None  # whose slope is wanted, see `wanted_torque.Potential`
 
     @classmethod
-    def of(cls, problem: Problem) -> "Aim":
+    def of(cls, problem: Problem, potential: Any = None) -> "Aim":
         """The aim of a problem."""
         task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
         set_angles = (wanted.ground_angle_deg, wanted.theta2_start_deg) != (None, None)
@@ -65,7 +61,7 @@ class Aim:
             task.angle_length / size, task.driver_turns, task.closed, wanted,
             turned=not np.isnan(task.angles).any(), timed=not np.isnan(task.driver_turns).any(),
             over_turn=task.closed or wanted.transmission_over == "cycle",
-            potential=Potential.of(problem) if problem.torque is not None and problem.torque.weight else None,
+            potential=potential,
         )  # fmt: skip
 
 
@@ -110,15 +106,6 @@ class Places:
         return np.abs(self.o4 - self.o2)
 
 
-def elbow(line: ComplexArray, near: Any, far: Any, side: Any) -> ComplexArray:  # closure: RRR
-    """From the start of a line to the point `near` from it and `far` from its end, left where `side` is 1."""
-    length = np.abs(line) + HAIR
-    along = (length**2 + near**2 - far**2) / (2 * length)
-    across = np.sqrt(np.maximum(near**2 - along**2, 1e-16))  # in line where there is none
-    found: ComplexArray = line / length * (along + 1j * side * across)
-    return found
-
-
 def places(aim: Aim, designs: Designs) -> Places:
     """All joints at all targets; where a loop does not close, links 3 and 4 are in line."""
     x = designs.x
@@ -141,22 +128,14 @@ def misses(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         turn = np.angle((at.b - at.a) * np.exp(1j * (at.body - aim.angles)))
         parts.append(turn * aim.angle_length * aim.root_weights)
     if aim.potential is not None:
-        parts.append(np.sqrt(len(aim.points)) * torque_misses(aim, aim.potential, designs, at))
+        untimed = replace(aim, timed=False)
+
+        def turned(theta2: FloatArray) -> Places:
+            return places(untimed, replace(designs, x=np.concatenate([designs.x[:, :10], theta2], axis=1)))
+
+        ends = at.theta2[:, :1], at.theta2[:, -1:]
+        parts.append(np.sqrt(len(aim.points)) * aim.potential.misses(turned, *ends, designs.sense[:, None]))
     return np.concatenate(parts, axis=1)
-
-
-def torque_misses(aim: Aim, potential: Potential, designs: Designs, at: Places) -> FloatArray:
-    """Slopes of the potential minus the wanted torques, as shares of the greatest of these; shape (B, K)."""
-    first, last = at.theta2[:, :1], at.theta2[:, -1:]
-    theta2 = first + potential.shares * (last - first)
-    untimed = replace(aim, timed=False)
-
-    def energy(by: float) -> FloatArray:
-        moved = np.concatenate([designs.x[:, :10], theta2 + by], axis=1)
-        return potential.energy(places(untimed, replace(designs, x=moved)))
-
-    slope = designs.sense[:, None] * (energy(TURNED) - energy(-TURNED)) / (2 * TURNED)
-    return potential.weight * (slope - potential.torques)
 
 
 def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
@@ -212,13 +191,6 @@ def apart(at: Places, name: str) -> FloatArray:
     """Distance of two points at the targets, (B, N)."""
     one, other = (getattr(at, point) for point in name.split("-"))
     return np.asarray(np.abs(one - other))
-
-
-def past_toggle(at: Places, k: int) -> FloatArray:
-    """Angle of driver and coupler past toggle at target k, rad, (B, 1)."""
-    bend = (at.b - at.a) / (at.a - at.o2 + HAIR) + HAIR
-    before = np.angle(bend[:, [0 if k else -1]] / bend[:, [k]])
-    return np.asarray(-np.sign(before) * np.angle(bend[:, [k]] ** 2) / 2)  # whichever way the line points
 
 
 def turning(aim: Aim, at: Places) -> list[FloatArray]:
@@ -413,12 +385,12 @@ class Best:
     error: float
 
 
-def search(problem: Problem, starts: int = STARTS, seed: int = 0) -> Best | None:
+def search(problem: Problem, starts: int = STARTS, seed: int = 0, potential: Any = None) -> Best | None:
     """The best design of a least-squares problem from random starts; None where the judge accepts none.
 
     ValueError: the problem has a requirement that this search does not know.
     """
-    aim = Aim.of(problem)
+    aim = Aim.of(problem, potential)
     designs = penalised(aim, drawn(aim, starts, np.random.default_rng(seed)))
     found = [polished(aim, designs[row : row + 1], steady=False) for row in range(len(designs.x))]
     if slopes(aim, places(aim, designs)).size:

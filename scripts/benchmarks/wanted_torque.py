@@ -12,9 +12,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from independent_search import STARTS, elbow, search
+from independent_geometry import elbow
+from independent_search import STARTS, search
 from measuring import Case
-from potential import Potential
 from scipy.optimize import minimize
 
 from grashof import synthesize
@@ -62,6 +62,79 @@ def loaded(rng: np.random.Generator, count: int) -> Problem:
 
 
 @dataclass(frozen=True, slots=True)
+class Potential:
+    """Lengths in sizes of the task, as the middle of its points; energies in N m.
+
+    `places` of joints, given to `energy`, have o2, o4, a, b, p (complex) and the lengths r2, r3, r4.
+    """
+
+    size: float  # m
+    middle: complex  # m
+    shares: FloatArray
+    torques: FloatArray  # N m, at these shares of the motion
+    weight: float  # sizes of the position error for 1 N m of the deviation (rms)
+    gravity: complex
+    per_length: float  # kg/m of bars
+    payload: float
+    forces: tuple[tuple[complex, complex], ...]  # on the coupler: its point (m, from A along AB), and N
+    springs: tuple[tuple[complex, complex, float, float], ...]  # from the ground to the coupler, N/m and m
+
+    @classmethod
+    def of(cls, problem: Problem) -> "Potential":
+        """That of a problem in metres, whose forces and springs act on the coupler."""
+        spec, torque = problem.dynamics, problem.torque
+        if spec is None or torque is None or torque.over != "share" or problem.length_unit != "m":
+            raise ValueError("a wanted torque over shares, in metres, is known here")
+        placed = problem.task.positions @ np.array([1, 1j])
+        return cls(
+            size=problem.task.size,
+            middle=complex(placed.mean()),
+            shares=torque.places,
+            torques=torque.torques,
+            weight=(torque.weight or 1.0) / torque.greatest / np.sqrt(len(torque.wanted)),
+            gravity=complex(*spec.gravity),
+            per_length=spec.mass_per_length or 0.0,
+            payload=spec.payload,
+            forces=tuple((complex(*load.at), complex(*(load.force or (0, 0)))) for load in spec.loads),
+            springs=tuple(
+                (
+                    complex(*spring.between[0].at),
+                    complex(*spring.between[1].at),
+                    spring.stiffness,
+                    spring.free_length,
+                )
+                for spring in spec.springs
+            ),
+        )
+
+    def energy(self, places: Any) -> FloatArray:
+        """The potential of linkages at their places, (B, K)."""
+        a, b, p, o2, o4 = (
+            self.size * each + self.middle for each in (places.a, places.b, places.p, places.o2, places.o4)
+        )
+        along = (b - a) / np.abs(b - a)
+        total = self._falls(self.payload, p)
+        for length, one, other in ((places.r2, o2, a), (places.r3, a, b), (places.r4, o4, b)):
+            total = total + self._falls(self.per_length * self.size * length, (one + other) / 2)
+        for at, force in self.forces:
+            total = total - ((a + at * along) * force.conjugate()).real
+        for ground, at, stiffness, free in self.springs:
+            total = total + stiffness * (np.abs(a + at * along - ground) - free) ** 2 / 2
+        return np.asarray(total)
+
+    def misses(
+        self, places: Callable[[FloatArray], Any], first: FloatArray, last: FloatArray, sense: FloatArray
+    ) -> FloatArray:
+        """Weighted slopes minus the wanted torques (B, K), from the driver's angles at the ends and sense."""
+        theta2 = first + self.shares * (last - first)
+        rise = self.energy(places(theta2 + STEP)) - self.energy(places(theta2 - STEP))
+        return np.asarray(self.weight * (sense * rise / (2 * STEP) - self.torques))
+
+    def _falls(self, mass: Any, at: ComplexArray) -> Any:
+        return -mass * (at * self.gravity.conjugate()).real
+
+
+@dataclass(frozen=True, slots=True)
 class Circles:
     """Linkages through three poses, from A and B at the first (B, 4), in sizes about the middle."""
 
@@ -105,20 +178,19 @@ class Circles:
                 & (r3 + r4 - r1 - r2 > margin) & (np.abs(r1 - r2) - np.abs(r3 - r4) > margin)
                 & (arms < 30).all(axis=1)
             )  # fmt: skip
-            inside = theta2[:, :1] + self.potential.shares * (theta2[:, -1:] - theta2[:, :1])
             arm = (self.points[0] - a[:, :1]) / (b - a)[:, :1] * r3[:, None]
 
-            def energy(by: float) -> FloatArray:
-                at_a = o2[:, None] + r2[:, None] * np.exp(1j * (inside + by))
+            def places(theta2: FloatArray) -> SimpleNamespace:
+                at_a = o2[:, None] + r2[:, None] * np.exp(1j * theta2)
                 along = elbow(o4[:, None] - at_a, r3[:, None], r4[:, None], side[:, :1])
-                at_b = at_a + along
-                return self.potential.energy(SimpleNamespace(
-                    a=at_a, b=at_b, p=at_a + arm * along / r3[:, None], o2=o2[:, None], o4=o4[:, None],
-                    r2=r2[:, None], r3=r3[:, None], r4=r4[:, None],
-                ))  # fmt: skip
+                at_p, fixed = at_a + arm * along / r3[:, None], (o2, o4, r2, r3, r4)
+                names = dict(
+                    zip(("o2", "o4", "r2", "r3", "r4"), (each[:, None] for each in fixed), strict=True)
+                )
+                return SimpleNamespace(a=at_a, b=at_a + along, p=at_p, **names)
 
-            slope = sense * (energy(STEP) - energy(-STEP)) / (2 * STEP)
-            missed = np.sqrt(((self.potential.weight * (slope - self.potential.torques)) ** 2).sum(axis=1))
+            misses = self.potential.misses(places, theta2[:, :1], theta2[:, -1:], np.array(sense))
+            missed = np.sqrt((misses**2).sum(axis=1))
         return np.where(sound & np.isfinite(missed), missed, np.inf)
 
     @property
@@ -186,9 +258,9 @@ def by_circles(problem: Problem, seconds: float, seed: int) -> float:
 
 def by_points(problem: Problem, seconds: float) -> float:
     """The least error of rounds of the independent search in that time, m."""
-    until, least, tried = perf_counter() + seconds, np.inf, 0
+    until, least, tried, potential = perf_counter() + seconds, np.inf, 0, Potential.of(problem)
     while perf_counter() < until or not tried:
-        found = search(problem, STARTS, tried)
+        found = search(problem, STARTS, tried, potential)
         least, tried = min(least, np.inf if found is None else found.error), tried + 1
     return float(least)
 

@@ -53,8 +53,8 @@ def squared_deviation(form: Form, x: Unknowns, places: Positions) -> ca.SX:
     """What the weight of a wanted torque adds to the squares, sizes squared."""
     if form.torque is None or not form.torque.weight:
         return ca.SX(0)
-    misses = form.torque.weight * symbolic_misses(form, x, places)
-    return form.targets * ca.sumsqr(misses) / misses.numel()
+    square: ca.SX = ca.sumsqr(form.torque.counted(form.targets) * symbolic_misses(form, x, places))
+    return square
 
 
 def cost_of_deviations(

@@ -56,6 +56,10 @@ class WantedCurve:
         """The targets of the rows."""
         return [round(place) for place in self.places]
 
+    def counted(self, targets: int) -> float:
+        """The weight of each row in the squares of a number of targets, sizes."""
+        return float(self.weight * np.sqrt(targets / len(self.places)))
+
     def moment(self, place: Any, first: Any, last: Any, sense: Any, at_target: Any = None) -> Moment:
         """The driver at the place of a row, or of many.
 

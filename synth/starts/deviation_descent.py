@@ -5,6 +5,8 @@ The deviation has many local minima, and none of the sampled linkages need lie i
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
@@ -23,6 +25,8 @@ KEPT, OTHERS = 300, 1200
 STAGES = ((300, 6), (300, 20))
 LONGEST = 0.3  # greatest change of a number in a step
 NUDGE = 1e-6
+_HEAVY, _NONE = 10.0, 1e6  # weight of violations; residuals of a linkage that has no torque
+NEARLY = 0.05  # violations of linkages that the programme brings within their limits
 _FREE = [number for number, name in enumerate(GROUPS) if name not in DEVIATIONS]
 
 
@@ -35,8 +39,8 @@ def seeks_torque(scaled: ScaledProblem) -> bool:
 def nearer_to_torque(scaled: ScaledProblem, motion: Displacements, linkages: Screened) -> Screened:
     """Linkages that Levenberg-Marquardt makes of some through two or three poses, and the best as they are.
 
-    They keep all limits but those of the deviation. The numbers are the logarithms of AP and BP and, of two
-    poses, how far the ground pivots lie from the chords of A and B.
+    They keep all limits but those of the deviation, or nearly, so that the programme mends them. The numbers
+    are the logarithms of AP and BP and, of two poses, how far the ground pivots lie from the chords of A, B.
     """
     kept = linkages[_sound(linkages)]
     deviation = _deviations(scaled, kept)
@@ -48,7 +52,10 @@ def nearer_to_torque(scaled: ScaledProblem, motion: Displacements, linkages: Scr
     for keep, steps in STAGES:
         x, deviation = _improved(scaled, motion, x, steps)
         x = x[np.argsort(deviation, kind="stable")[:keep]]
-    return Screened.joined([_linkages(scaled, motion, x), best])
+    found = _linkages(scaled, motion, x)
+    nearly = found.violations[:, _FREE].max(axis=1, initial=0.0) < NEARLY
+    violations = np.where(nearly[:, None], 0.0, found.violations)
+    return Screened.joined([replace(found, violations=violations)[nearly], best])
 
 
 def _stride(count: int) -> int:
@@ -59,24 +66,31 @@ def _stride(count: int) -> int:
 def _improved(
     scaled: ScaledProblem, motion: Displacements, x: FloatArray, steps: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Numbers of linkages (n, M) after steps, and the sums of their squared misses (n,)."""
-    misses = _misses(scaled, _linkages(scaled, motion, x))
-    cost, damping = (misses**2).sum(axis=1), np.full(len(x), 1e-2)
+    """Numbers of linkages (n, M) after steps, and the sums of their squared residuals (n,)."""
+    rows = _residuals(scaled, motion, x)
+    cost, damping = (rows**2).sum(axis=1), np.full(len(x), 1e-2)
     for _ in range(steps):
         raise_if_overdue()
-        slopes = _slopes(scaled, motion, x, misses)
+        slopes = _slopes(scaled, motion, x, rows)
         normal = slopes @ slopes.swapaxes(1, 2)
         scale = damping[:, None] * (np.einsum("sii->si", normal) + 1e-12)
         damped = normal + scale[..., None] * np.eye(x.shape[1])
-        step = np.linalg.solve(damped, slopes @ misses[..., None])[..., 0]
+        step = np.linalg.solve(damped, slopes @ rows[..., None])[..., 0]
         tried = x - np.clip(step, -LONGEST, LONGEST)
-        there = _linkages(scaled, motion, tried)
-        new = np.where(_sound(there)[:, None], _misses(scaled, there), np.inf)
+        new = _residuals(scaled, motion, tried)
         better = (new**2).sum(axis=1) < cost
-        x, misses = (np.where(better[:, None], one, other) for one, other in ((tried, x), (new, misses)))
-        cost = (misses**2).sum(axis=1)
+        x, rows = (np.where(better[:, None], one, other) for one, other in ((tried, x), (new, rows)))
+        cost = (rows**2).sum(axis=1)
         damping = np.clip(np.where(better, damping / 4, damping * 4), 1e-12, 1e8)
     return x, cost
+
+
+def _residuals(scaled: ScaledProblem, motion: Displacements, x: FloatArray) -> FloatArray:
+    """Misses and violations (n, R), the largest number where a linkage has no torque."""
+    there = _linkages(scaled, motion, x)
+    misses = _misses(scaled, there)
+    rows = np.concatenate([misses, _HEAVY * there.violations[:, _FREE]], axis=1)
+    return np.where(np.isfinite(rows).all(axis=1)[:, None], rows, _NONE)
 
 
 def _sound(linkages: Screened) -> BoolArray:
@@ -94,14 +108,14 @@ def _deviations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     return rms(_misses(scaled, linkages))
 
 
-def _slopes(scaled: ScaledProblem, motion: Displacements, x: FloatArray, misses: FloatArray) -> FloatArray:
-    """Derivatives of the misses by the numbers, (n, M, K), zero where a linkage has none."""
+def _slopes(scaled: ScaledProblem, motion: Displacements, x: FloatArray, rows: FloatArray) -> FloatArray:
+    """Derivatives of the residuals by the numbers, (n, M, R)."""
     slopes = []
     for column in range(x.shape[1]):
         moved = x.copy()
         moved[:, column] += NUDGE
-        slopes.append((_misses(scaled, _linkages(scaled, motion, moved)) - misses) / NUDGE)
-    return np.nan_to_num(np.stack(slopes, axis=1), posinf=0.0, neginf=0.0)
+        slopes.append((_residuals(scaled, motion, moved) - rows) / NUDGE)
+    return np.clip(np.stack(slopes, axis=1), -_NONE, _NONE)
 
 
 def _numbers(scaled: ScaledProblem, motion: Displacements, linkages: Screened) -> FloatArray:

@@ -60,7 +60,7 @@ class Placement(View):
         self.o4, self.bp = self.o2 + ground, self.ap - self.relative.r3 * ground
         self.r1 = np.hypot(ground.x, ground.y)
         self.r2, self.r3, self.r4 = (self.r1 * getattr(self.relative, name) for name in ("r2", "r3", "r4"))
-        self.offset = self.r4
+        self.lengths, self.offset = (self.r1, self.r2, self.r3, self.r4), self.r4
         self.theta1 = np.arctan2(ground.y, ground.x)
         theta2 = self.relative.theta2
         first, last = theta2.column(0), theta2.column(-1)

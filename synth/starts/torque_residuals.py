@@ -15,11 +15,11 @@ Residuals = tuple[FloatArray, FloatArray]  # (n, K), and their derivatives by th
 
 
 def torque_residuals(target: SearchTargets, at: Placement, batch: Batch) -> Residuals:
-    """Weighted drive torques minus the wanted ones, sizes, of the linkages of a batch where they stand."""
+    """Weighted drive torques minus the wanted ones, sizes, of a batch where it stands."""
     curve, (count, _, width) = target.torque, at.by_theta3.shape
     if curve is None:
         return np.zeros((count, 0)), np.zeros((count, 0, width))
-    lengths, along = [getattr(at, name) for name in ("r1", "r2", "r3", "r4")], at.normal
+    along = at.normal
     arm = Vector(at.ap.dot(along), along.cross(at.ap))
     theta2, sense = at.theta1 + at.relative.theta2, batch.direction[:, None]
     first = theta2.column(0)
@@ -30,9 +30,9 @@ def torque_residuals(target: SearchTargets, at: Placement, batch: Batch) -> Resi
         at_targets = Dual(theta2.value[:, index], theta2.slope[:, index])
     driver = curve.moment(np.array(curve.places), first, last, sense, at_targets)
     ground = target.kind.dyad.ground(at)
-    instant = target.kind.instant(at.o2, ground, lengths, arm, batch.assembly[:, :1], driver)
+    instant = target.kind.instant(at.o2, ground, at.lengths, arm, batch.assembly[:, :1], driver)
     miss: Dual = curve.miss(instant, sense, np.array(curve.torques))
-    root = curve.weight * (target.count / len(curve.places)) ** 0.5
+    root = curve.counted(target.count)
     shape = count, len(curve.places)
     value = np.broadcast_to(miss.value, shape)
     closed = np.isfinite(value) & (np.abs(value) < OPEN)

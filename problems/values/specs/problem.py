@@ -22,7 +22,7 @@ from grashof.problems.values.linkages.mechanisms import (
     mechanisms,
     spelt_out,
 )
-from grashof.problems.values.requirements import task_limits, torque_limits
+from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.modes import Rotatability
@@ -36,6 +36,7 @@ from grashof.problems.values.requirements.quantities import (
 )
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.requirements.task_limits import stated_size, strokes_wrong
+from grashof.problems.values.specs import torque_limits
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.specs.needs import NEEDED, NO_OUTPUT, OF_OUTPUTS
 from grashof.problems.values.tasks.task import Task

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from wanted_torques import planted_path_torque, planted_torque
+from loaded_linkages import planted_path_torque, planted_torque
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.measures import Values

@@ -5,7 +5,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from wanted_torques import planted_path_torque, planted_torque
+from loaded_linkages import planted_path_torque, planted_torque
 
 from grashof import synthesize
 from grashof.analysis import verify
