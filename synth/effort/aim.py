@@ -39,8 +39,7 @@ class Area(NamedTuple):
     @classmethod
     def of(cls, linkage: Linkage, place: EffortPlace) -> Area:
         """The area of a place; that of the guided body is turned and moved onto the link that carries it."""
-        (left, right), (low, high) = place.at.x, place.at.y
-        corner, along, across = complex(left, low), complex(right - left), 1j * (high - low)
+        corner, along, across = place.spanned
         if place.link != BODY:
             return cls(int(place.link), corner, along, across)
         turned = np.exp(1j * float(linkage.body_angle))

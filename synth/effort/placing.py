@@ -54,5 +54,6 @@ def _placed(part: PartSpec, x: FloatArray, row: int) -> PartSpec:
 
 
 def _at(place: EffortPlace, x: FloatArray) -> EffortPlace:
-    (left, right), (low, high) = place.at.x, place.at.y
-    return place.placed(float(left + (right - left) * x[0]), float(low + (high - low) * x[1]))
+    corner, along, across = place.spanned
+    found = corner + along * x[0] + across * x[1]
+    return place.placed(float(found.real), float(found.imag))

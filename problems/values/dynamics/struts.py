@@ -37,7 +37,7 @@ class EffortPlace(TableValue):
         1 (the ground, whose frame is the global one) to 4; of a six-bar to 6; or the guided body, whose
         frame is at P and turned by `body_angle` against the link of P.
     at : Box, length
-        In that frame; a box of no width is a point.
+        In that frame: a box, which is a point where it has no width, or a segment (`Region`).
     """
 
     link: int | str
@@ -50,6 +50,8 @@ class EffortPlace(TableValue):
     def stated(self) -> dict[str, Any]:
         """The keys with their values, as a file has them."""
         at: Any = list(self.point) if self.is_point else {"x": list(self.at.x), "y": list(self.at.y)}
+        if isinstance(self.at, Region):
+            at = {"on": self.at.corners.tolist()}
         return {"link": self.link, "at": at}
 
     @property
@@ -61,6 +63,15 @@ class EffortPlace(TableValue):
     def point(self) -> tuple[float, float]:
         """The point, or the least corner of the area."""
         return self.at.x[0], self.at.y[0]
+
+    @property
+    def spanned(self) -> tuple[complex, complex, complex]:
+        """Corner, side and other side of the area, u + i v; a segment has no other side."""
+        if isinstance(self.at, Region):
+            first, last = self.at.places.tolist()
+            return first, last - first, 0j
+        (left, right), (low, high) = self.at.x, self.at.y
+        return complex(left, low), complex(right - left), 1j * (high - low)
 
     def placed(self, u: float, v: float) -> EffortPlace:
         """The point (u, v) of the same link."""
@@ -214,8 +225,10 @@ def _link(link: object, where: str) -> object:
 
 
 def _area(at: object, where: str) -> Box:
-    if isinstance(at, Region) or not isinstance(at, Box):
-        raise wrong_value(where, at, "a point [u, v] or a box")
+    if not isinstance(at, Box):
+        raise wrong_value(where, at, "a point [u, v], a box or a segment")
+    if isinstance(at, Region) and at.on is None:
+        raise ProblemError(f"{where} is a polygon; it must be a point, a box or a segment")
     if not np.isfinite([*at.x, *at.y]).all():
         raise ProblemError(
             f"{where} has an open side; it must be {{ x = …, y = … }}, each a number or [lo, hi]"

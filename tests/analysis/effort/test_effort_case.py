@@ -237,3 +237,30 @@ def test_a_coil_turned_too_far_and_angles_beyond_the_travel_are_named() -> None:
     coil = PartSpec("torsion", (1, 4), (replace(COIL, turn_deg=5.0),), free_angle_deg=(20.0, 20.0))
     case = case_of(ROCKER, parts=(coil,), stays_deg=(1.0, 300.0))
     assert [miss.key for miss in effort_figures(case).misses] == ["effort.stays_deg", "effort.parts[0]"]
+
+
+def test_the_effort_is_the_same_in_every_unit() -> None:
+    """A linkage in centimetres and in metres; so are friction, and a coil's moment."""
+
+    def in_metres(place: EffortPlace) -> EffortPlace:
+        return place.placed(*(0.01 * x for x in place.point))
+
+    coil = PartSpec(
+        "torsion", (1, 4), (replace(COIL, moment=3.0, friction=0.5),), free_angle_deg=(20.0, 20.0)
+    )
+    case = case_of(ROCKER, parts=(case_of(ROCKER).spec.parts[0], coil))
+    strut, _ = case.spec.parts
+    small = FourBar((0, 0), (0.04, 0), 0.02, 0.025, 0.03, (0.01, 0.01), 1, 0.4)
+    size = replace(GAS, extended=0.01 * GAS.extended, stroke=0.01 * GAS.stroke)
+    first, second = (in_metres(place) for place in strut.places)
+    parts = (replace(strut, between=(first, second), sizes=(size,)), coil)
+    effort = replace(case.spec, on=in_metres(case.spec.on), parts=parts)
+    friction = FrictionSpec(moment=(0.0, 0.2, 0.0, 0.03))
+    moved = travel(small, case.travel.targets, np.array([1, 1]), (0.5, 1.2))
+    assert moved is not None
+    other = EffortCase(small, replace(case.dynamics, effort=effort, friction=friction), 1.0, moved)
+    case = replace(case, dynamics=replace(case.dynamics, friction=friction))
+    # gravity is in m/s2 in both
+    (_, one), (_, two) = effort_curves(case, 9), effort_curves(other, 9)
+    for name in ("angle_deg", "without", "effort", "friction"):
+        np.testing.assert_allclose(getattr(one, name), getattr(two, name), rtol=1e-9, atol=1e-9)

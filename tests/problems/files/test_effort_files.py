@@ -75,9 +75,13 @@ def test_files_are_read_back_as_they_are_written(parts: str) -> None:
     assert problem_from(tomllib.loads(problem_toml(problem)), "test").dynamics == problem.dynamics
 
 
-def test_a_region_is_no_place_of_a_part() -> None:
-    line = BETWEEN.replace("{ x = [0, 2], y = -1 }", "{ on = [[0, 0], [1, 1]] }")
-    assert "at" in refusal(linkage, EFFORT + PART + line)
+def test_an_end_may_be_on_a_segment_but_not_in_a_polygon() -> None:
+    line = BETWEEN.replace("{ x = [0, 2], y = -1 }", "{ on = [[0, 0], [1, 2]] }")
+    spec = linkage(EFFORT + PART + line)
+    assert linkage_from(tomllib.loads(linkage_toml(spec)), "test").dynamics == spec.dynamics
+    inside = line.replace("{ on = [[0, 0], [1, 2]] }", "{ inside = [[0, 0], [1, 0], [1, 1]] }")
+    expected = "effort.parts[0].between[0].at is a polygon; it must be a point, a box or a segment"
+    assert refusal(linkage, EFFORT + PART + inside) == expected
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from grashof.analysis.cylinder.travel import travel
 from grashof.analysis.effort.case import EffortCase
 from grashof.analysis.effort.deviation import effort_curves, effort_figures
-from grashof.problems import Box, DynamicsSpec, FourBar, LinkageSpec, ProblemError
+from grashof.problems import Box, DynamicsSpec, FourBar, LinkageSpec, ProblemError, Region
 from grashof.problems.files.effort_schema import usual_sizes
 from grashof.problems.values.dynamics.effort import EffortSpec
 from grashof.problems.values.dynamics.struts import EffortPlace, PartSpec
@@ -114,6 +114,17 @@ def test_strokes_are_kept_where_they_are_active() -> None:
     least, most = figures.lengths[0]
     assert figures.misses == ()
     assert min(most % 1, 1 - most % 1) < 1e-3 or min(least % 1, 1 - least % 1) < 1e-3  # sizes are whole
+
+
+def test_an_end_stays_on_its_segment() -> None:
+    rail = EffortPlace(1, Region(on=[(-60, -120), (140, -20)]))
+    case = case_of(PartSpec("gas", (rail, HEAD), GAS), band=(-10.0, 25.0))
+    found = placed(case)
+    assert excess(case, found) < 0
+    assert found is not None
+    x, y = found.parts[0].places[0].point
+    assert y == pytest.approx(-120 + (x + 60) / 2)
+    assert -60 <= x <= 140
 
 
 def test_two_parts_are_no_worse_than_one() -> None:
