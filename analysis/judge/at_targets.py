@@ -10,7 +10,7 @@ from grashof.analysis.four_bar.instant_centres import instant_centres
 from grashof.analysis.judge.missed_limits import lifted
 from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
-from grashof.analysis.mechanism.kinematics import solve_kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Region, Requirements, Task
@@ -72,17 +72,22 @@ def _figures(
         (theta3,) = lifted(state.theta3[[k]], (low, high)).tolist()
         yield "the direction of the coupler in deg", theta3, (low, high), Unit.ANGLE
     if limits.coupler_rate is not None:
-        moving = solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
+        moving = _moving(linkage, verdict, k)
         yield "the rate of the coupler", float(moving.omega3), limits.coupler_rate, Unit.RATIO
     if limits.transmission_min_deg is not None:
         mu = float(transmission_angle(linkage, verdict.theta2[k]))
         least = float(np.radians(limits.transmission_min_deg))
         yield "the transmission angle in deg", min(mu, float(np.pi) - mu), (least, np.inf), Unit.ANGLE
     if limits.mechanical_advantage_min is not None:
-        moving = solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
+        moving = _moving(linkage, verdict, k)
         with np.errstate(divide="ignore"):
             advantage = float(1.0 / np.abs(moving.omega4))
         yield "the mechanical advantage", advantage, (limits.mechanical_advantage_min, np.inf), Unit.RATIO
+
+
+def _moving(linkage: Linkage, verdict: Verdict, k: int) -> Kinematics:
+    """The linkage at target k, its driver at 1 rad/s."""
+    return solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
 
 
 def past_toggle(linkage: Linkage, verdict: Verdict, k: int) -> float:

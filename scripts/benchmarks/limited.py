@@ -117,7 +117,7 @@ def _place(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict
 def _distance(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict[str, Any]:
     """Distances of A from O4 that are greater than the least of the best design."""
     a = solve_position(linkage, verdict.theta2).a
-    least = float(np.hypot(*(a - linkage.o4).T).min())  # type: ignore[attr-defined]
+    least = float(np.hypot(*(a - linkage.o4).T).min())
     return {"distances": {"a-o4": (least * rng.uniform(1.05, 1.2), 1e6)}}
 
 

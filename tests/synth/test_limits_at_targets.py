@@ -20,6 +20,7 @@ from grashof.problems import (
 )
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
+from grashof.synth import Candidate
 
 THREE = MotionTask([[0, 0], [2, 1.5], [3, 3]], np.radians([0, 25, 60]))
 FIVE = PathTask([[0, 0], [1, 0.4], [2, 0.5], [3, 0.2], [3.6, -0.3]])
@@ -48,6 +49,34 @@ def test_a_place_at_one_target_alone_binds_there() -> None:
     best = synthesize(bound, seed=0, enough=5).best
     there = solve_position(best.linkage, best.verdict.theta2).a
     assert there[0, 0] >= box.x[0] - 1e-9
+
+
+def direction(design: Candidate, theta2: float, target: int) -> float:
+    """Of the coupler, by the intersection of circles about A and O4."""
+    linkage = design.linkage
+    a = complex(*linkage.o2) + linkage.r2 * np.exp(1j * theta2)
+    way = complex(*linkage.o4) - a
+    cosine = (linkage.r3**2 + abs(way) ** 2 - linkage.r4**2) / (2 * linkage.r3 * abs(way))
+    return float(np.angle(way) + design.verdict.assembly[target] * np.arccos(cosine))
+
+
+@pytest.mark.slow
+def test_a_fixed_distance_and_ranges_of_the_coupler_at_single_targets_are_kept() -> None:
+    at = (
+        TargetLimits(targets=[3], distances={"a-o4": 2.5}),
+        TargetLimits(targets=[2], coupler_angle_deg=(130, 131), coupler_rate=(0.8, 0.9)),
+    )
+    wanted = Requirements(rotatability=Rotatability.ANY, at=at)
+    result = synthesize(Problem(task=THREE, requirements=wanted), seed=0, enough=5, starts=40)
+    assert len(result) > 0
+    for each in result.candidates:
+        linkage, (_, second, third) = each.linkage, each.verdict.theta2.tolist()
+        a = complex(*linkage.o2) + linkage.r2 * np.exp(1j * third)
+        assert abs(a - complex(*linkage.o4)) == pytest.approx(2.5, abs=1e-8)
+        angle = np.degrees(direction(each, second, 1)) % 360
+        rate = (direction(each, second + 1e-6, 1) - direction(each, second - 1e-6, 1)) / 2e-6
+        assert 130 - 1e-6 <= angle <= 131 + 1e-6
+        assert 0.8 - 1e-6 <= rate <= 0.9 + 1e-6
 
 
 def test_files_state_limits_at_targets() -> None:

@@ -25,12 +25,10 @@ SPREAD = 121, 241  # of the first look: logarithms of r2 over r1, and driver ang
 FINE, LAST = 201, 4  # samples of the range in the last rounds, and the number of these
 ZOOM, ROUNDS, CLOSER = 17, 14, 0.25  # numbers tried at a time, rounds, and the share that each keeps
 REACH, STEEP, SAME = 0.15, 8.0, 1e-11  # about a place: both numbers, angle over ratio, and rad that are equal
-BASINS, FEW = (
-    4,
-    2,
-)  # lowest places that are looked at closely; at a transmission angle, of which the best counts
+BASINS = 4  # lowest places that are looked at closely
+FEW = 2  # of them at a transmission angle, of which the best counts
 PRICE = 10.0  # rad: of a limit missed by one
-NONE = "no mirrored four-bar keeps the limits and closes over the range"
+NONE = "no mirrored four-bar was found that closes over the range and keeps the limits"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +66,7 @@ class Mirrored:
 
     def _desired(self, count: int) -> DesiredOutput:
         aims, sense = self.aims, self.search.sense
-        pairs = aims.task.norm == "rms"
-        desired = aims.pairs(sense) if pairs else aims.samples(sense, count)
-        if pairs and len(desired.turned) < count and aims.task.law is not None:
-            desired = aims.samples(sense, count)
+        desired = aims.samples(sense, count) if aims.task.norm == "max" else aims.pairs(sense)
         middle = sense * float(aims.task.output(np.array(aims.task.mirror_turn)))
         return DesiredOutput(
             np.append(desired.turned, self.turned), np.append(desired.output, middle), desired.weights
