@@ -55,6 +55,9 @@ def test_a_copied_link_opens_the_same_design_and_the_copied_file_is_it(
         searched(other)
         other.evaluate(f"location.hash = {link.split('#')[1]!r}")  # pasted into the address bar
         again = shown(other, "s.document.motion.poses[1][0] === 3.5")
+        assert (
+            other.locator("tr[data-target='1'] [data-cell=x]").input_value() == "3.5"
+        )  # which has the focus
         assert again["designs"][0]["linkage"] == sent
     finally:
         other.close()

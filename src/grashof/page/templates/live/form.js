@@ -135,11 +135,13 @@ class Form {
     return { low: power / 10, high: Math.max(high, this.limitOf(key) ?? 0), off: high, step: power / 20 };
   }
 
-  show() {
+  // The task as it is; what is being typed stays, but not in another task.
+  show({ opened = false } = {}) {
     const { task, root } = this;
     const { document } = task;
     const unit = document.length_unit || "";
-    this.table();
+    const typing = opened ? null : root.ownerDocument.activeElement;
+    this.table(typing);
     for (const node of $$("[data-unit]", root)) node.textContent = unit ? ` (${unit})` : "";
     const dwell = task.kind === "dwell"; // six-bars alone, and goals of its own
     // two outputs have a kind of their own, too
@@ -152,7 +154,7 @@ class Form {
     this.select($("[name=objective]", root), this.goal());
     this.select($("[name=rotatability]", root), (document.requirements || {}).rotatability || "");
     for (const input of $$("[data-limit]", root)) {
-      if (input === root.ownerDocument.activeElement && input.type === "number") continue;
+      if (input === typing && input.type === "number") continue;
       const { low, high, off, step } = this.range(input.dataset.limit);
       const value = this.limitOf(input.dataset.limit);
       if (input.type === "range") Object.assign(input, { min: low, max: high, step, value: value ?? off });
@@ -182,13 +184,12 @@ class Form {
     select.value = value;
   }
 
-  table() {
+  table(typing) {
     const { task, rows } = this;
     const turns = task.kind === "motion";
     const { targets } = task;
     const last = task.closes ? targets.length - 1 : targets.length;
     $("[data-angle]", this.root).hidden = !turns;
-    const held = rows.contains(document.activeElement) ? document.activeElement : null;
     while (rows.children.length > last) rows.lastElementChild.remove();
     while (rows.children.length < last) rows.append(this.row(rows.children.length));
     targets.slice(0, last).forEach((target, k) => {
@@ -196,7 +197,7 @@ class Form {
       for (const input of $$("input", row)) {
         const value = target[input.dataset.cell];
         input.closest("td").hidden = input.dataset.cell === "angle" && !turns;
-        if (input !== held) input.value = value === null ? "" : String(value);
+        if (input !== typing) input.value = value === null ? "" : String(value);
         input.disabled = value === null;
       }
       const locked = task.locked.has(`target-${k}`);

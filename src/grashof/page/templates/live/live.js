@@ -69,7 +69,7 @@ class Live extends MovingPage {
 
   // The task has changed, or only how it looks: it is drawn at once, followed, and searched when it rests.
   changed({ opened = false, looks = false }) {
-    this.form.show();
+    this.form.show({ opened });
     $("[data-undo]", this.root).disabled = !this.task.past.length;
     $("[data-redo]", this.root).disabled = !this.task.future.length;
     $("[data-title]", this.root).textContent = this.task.document.title || this.task.name;
@@ -186,9 +186,10 @@ class Live extends MovingPage {
   }
 
   headline({ phase, designs, lost, headline, found }) {
+    const count = `${designs.length} design${designs.length === 1 ? "" : "s"}`;
     const words = {
-      track: `${designs.length} designs follow${lost.length ? `, ${lost.length} lost` : ""}`,
-      searching: `${designs.length} designs so far`,
+      track: `${count} ${designs.length === 1 ? "follows" : "follow"}${lost.length ? `, ${lost.length} lost` : ""}`,
+      searching: `${count} so far`,
       found: found ? headline : "Closest misses: no design meets all requirements",
     };
     $("[data-headline]", this.root).textContent = words[phase];
