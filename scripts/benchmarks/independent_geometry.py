@@ -39,3 +39,9 @@ def past_toggle(at: Any, k: int) -> FloatArray:
     bend = (at.b - at.a) / (at.a - at.o2 + HAIR) + HAIR
     before = np.angle(bend[:, [0 if k else -1]] / bend[:, [k]])
     return np.asarray(-np.sign(before) * np.angle(bend[:, [k]] ** 2) / 2)  # whichever way the line points
+
+
+def apart(at: Any, name: str) -> FloatArray:
+    """Distance of two points at the targets, (B, N)."""
+    one, other = (getattr(at, point) for point in name.split("-"))
+    return np.asarray(np.abs(one - other))

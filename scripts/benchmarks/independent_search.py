@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from independent_geometry import HAIR, elbow, past_toggle, sides
+from independent_geometry import HAIR, apart, elbow, past_toggle, sides
 from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, verify
@@ -185,12 +185,6 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)
         rows += [-step, step.sum(axis=1, keepdims=True) - TURN + INSIDE]
     return np.concatenate(rows, axis=1)
-
-
-def apart(at: Places, name: str) -> FloatArray:
-    """Distance of two points at the targets, (B, N)."""
-    one, other = (getattr(at, point) for point in name.split("-"))
-    return np.asarray(np.abs(one - other))
 
 
 def turning(aim: Aim, at: Places) -> list[FloatArray]:

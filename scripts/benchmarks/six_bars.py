@@ -1,7 +1,9 @@
-"""Six-bars: planted tasks, closed curves beside four-bars, functions, and Klann's leg.
+"""Six-bars: planted tasks, closed curves beside four-bars, functions, Klann's leg, and five smooth poses.
 
 Times are those of the processor, imports apart, of whole searches with the judge; a line ends with "!" where
-fewer tasks are solved, or errors are greater, than stated.
+fewer tasks are solved, or errors are greater, than stated. Smooth poses are a cubic spline of position and
+angle through three random ones, turning by 60 to 90 deg; that line ends with "!" where fewer than nine sets of
+ten have six-bars, the median number is below 100, the median time above 2 s, or the judge rejects one.
 """
 
 from collections.abc import Callable, Iterator
@@ -11,20 +13,35 @@ from typing import Any
 
 import numpy as np
 from measuring import Case, timed
+from scipy.interpolate import CubicSpline
 
 from grashof import load, synthesize
-from grashof.analysis import solve_position
+from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import planted_function, planted_motion, planted_path
-from grashof.problems import FunctionTask, PathTask, Problem, Requirements, Task, load_linkage
+from grashof.problems import (
+    FunctionTask,
+    MotionTask,
+    PathTask,
+    Problem,
+    Requirements,
+    Rotatability,
+    SixBar,
+    Task,
+    load_linkage,
+)  # fmt: skip
 from grashof.problems.values.tasks.closed_curve import even_places
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
 from grashof.synth.starts.six_bars.finder import SixBars
+from grashof.synth.theory.six_bars.five_poses import six_bars_through
 
 CURVE = 48  # points of closed curves
 FOOT = 30  # foot points of Klann's leg
 DEG = float(np.degrees(1.0))
+WORDS = "watt-1", "stephenson-1", "stephenson-3"
+JUDGED = 20  # of a set, from the best to the worst
 
 
 def rms(one: Candidate) -> float:
@@ -154,6 +171,53 @@ def _planted(points: int) -> Callable[[np.random.Generator], tuple[Any, ...]]:
     return partial(planted_path, points=points, mechanism="stephenson-3")
 
 
+def smooth_poses(rng: np.random.Generator) -> MotionTask:
+    """A set of poses."""
+    turn = np.radians(rng.uniform(60, 90)) * rng.choice([-1, 1])
+    angles = [0, rng.uniform(0.3, 0.7) * turn, turn]
+    spline = CubicSpline([0, 0.5, 1], np.column_stack([rng.uniform(-1, 1, (3, 2)), angles]))
+    poses = spline(np.linspace(0, 1, 5))
+    return MotionTask(poses[:, :2], poses[:, 2])
+
+
+def through_smooth_poses(required: Requirements, chains: int, count: int, seed: int) -> Iterator[str]:
+    """Numbers of six-bars of `count` sets, the best transmission angles, and times."""
+    numbers, times, best, judged, rejected = [], [], [], 0, 0
+    for number in range(seed, seed + count):
+        rng = np.random.default_rng(number)
+        task = smooth_poses(rng)
+        frame, rows = Frame.of(task), [row for word in WORDS for row in task.rows(word)]
+        asked = frame.inward(task.positions), task.angles, frame.requirements(required.for_task(task))
+        found, seconds = timed(partial(six_bars_through, *asked, rows, rng, chains), process_time)
+        numbers.append(len(found))
+        times.append(seconds)
+        verdicts = [
+            verify(_placed(each, frame), task, required) for each in found[:: -(-len(found) // JUDGED) or 1]
+        ]
+        judged, rejected = judged + len(verdicts), rejected + sum(not each.ok for each in verdicts)
+        best += [np.degrees(each.transmission_min_task) for each in verdicts[:1]]
+    share, median = np.mean(np.array(numbers) > 0), np.median(numbers)
+    sound = share >= 0.9 and median >= 100 and np.median(times) <= 2 and not rejected
+    yield (
+        f"{np.count_nonzero(numbers)} of {count} sets, {min(numbers)} to {max(numbers)} six-bars, "
+        f"median {median:g}; "
+        f"best mu median {np.median(best):.1f} deg; judge: {judged - rejected} of {judged}; "
+        f"median {np.median(times):.2f} s{'' if sound else ' !'}"
+    )
+
+
+def _placed(found: SixBar, frame: Frame) -> SixBar:
+    """A find where the poses are."""
+    origin = np.array([frame.origin.real, frame.origin.imag])
+    return found.scaled(frame.scale, -origin / frame.scale)
+
+
+def _of_smooth_poses(rotatability: Rotatability, mu: float, chains: int) -> Case:
+    required = Requirements(rotatability=rotatability, transmission_min_deg=mu)
+    name = f"smooth poses, {rotatability}, mu from {mu:g} deg, {chains} chains"
+    return Case(name, 10, partial(through_smooth_poses, required, chains))
+
+
 CASES = [
     *(
         Case(f"path of {n} points", 20, partial(solved, _planted(n), rms, {1e-10: 20}, 10.0))
@@ -179,4 +243,7 @@ CASES = [
     Case("function square", 3, partial(function, "power", (0.0, 1.0), 2.0, 0.0005)),
     Case("function sin", 3, partial(function, "sin", (0.0, 90.0), None, 0.0005)),
     Case("Klann's leg", 3, klann),
+    _of_smooth_poses(Rotatability.FULL_CRANK, 0, 2000),
+    _of_smooth_poses(Rotatability.FULL_CRANK, 20, 8000),
+    _of_smooth_poses(Rotatability.ANY, 0, 2000),
 ]  # fmt: skip

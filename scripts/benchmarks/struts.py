@@ -13,14 +13,14 @@ from time import process_time
 from typing import Any
 
 import numpy as np
-from independent_search import elbow
+from independent_geometry import elbow
 from measuring import Case
 
 from grashof import load, synthesize
 from grashof.analysis.effort.case import EffortCase
 from grashof.analysis.effort.deviation import effort_figures
 from grashof.analysis.judge.effort_travel import effort_of_design
-from grashof.problems import Box, MotionTask, Problem, Requirements
+from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements, Rotatability
 from grashof.problems.files.effort_schema import usual_sizes
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
@@ -53,7 +53,12 @@ def bonnet() -> Problem:
         length_unit="mm",
         task=MotionTask.from_degrees([[520, -40, 0], [539.046, 83.905, 10], [440.891, 382.632, 50]]),
         requirements=Requirements(
-            rotatability="any", link_length=(60, 260), o2=around, o4=around, a_on_body=plate, b_on_body=plate
+            rotatability=Rotatability.ANY,
+            link_length=(60, 260),
+            o2=around,
+            o4=around,
+            a_on_body=plate,
+            b_on_body=plate,
         ),
         dynamics=DynamicsSpec(payload=18, gravity=(0, -9.81), effort=effort),
     )
@@ -73,6 +78,8 @@ class Moves:
 def moves(problem: Problem, case: EffortCase) -> Moves:
     """The body along the travel, by the elbow formula; its sense is that of the judge."""
     linkage, spec = case.linkage, case.spec
+    if not isinstance(linkage, FourBar):
+        raise TypeError("other kinds are not known here")
     places = np.linspace(case.travel.start, case.travel.end, STEPS)
     at = case.travel.at(places)
     theta2, side = at.theta2, np.sign(at.margins[0])
