@@ -2,8 +2,8 @@
 
 Times are those of the processor, imports apart, of whole searches with the judge; a line ends with "!" where
 fewer tasks are solved, or errors are greater, than stated. Smooth poses are a cubic spline of position and
-angle through three random ones, turning by 60 to 90 deg; that line ends with "!" where fewer than nine sets of
-ten have six-bars, the median number is below 100, the median time above 2 s, or the judge rejects one.
+angle through three random ones, turning by 60 to 90 deg; that line ends with "!" where fewer than nine sets
+of ten have six-bars, the median number is below 100, the median time above 2 s, or the judge rejects one.
 """
 
 from collections.abc import Callable, Iterator

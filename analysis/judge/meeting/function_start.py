@@ -118,8 +118,8 @@ def begins_mirrored(linkage: Linkage, task: Task, by: Input, directions: tuple[i
         cosine = (r1 - along) / (2 * r2)
         if not abs(cosine) <= 1:
             continue
-        for sign, direction in product((1, -1), directions):
-            at = float(linkage.theta1) + sign * float(np.arccos(cosine))
+        for side, direction in product((1, -1), directions):
+            at = float(linkage.theta1) + side * float(np.arccos(cosine))
             if off_mirror(linkage, at) <= _SYMMETRIC * r1:
                 start = at - direction * task.mirror_turn
                 value = float(search.value(start, direction))
