@@ -88,7 +88,7 @@ def solve_round(found: Round, ledger: Ledger, run: Run) -> None:
     scaled = ledger.scaled
     starts = mended(scaled, found.starts)
     batch = min(BATCH, run.search.enough) if scaled.exact else BATCH_LEAST_SQUARES
-    batch = len(starts) if found.together else batch
+    batch = max(1, len(starts)) if found.together else batch
     for begin in range(0, len(starts), batch):
         ended = run.ended()
         if not ledger.within_round or (ended and (ledger.best or begin)):

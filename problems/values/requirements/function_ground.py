@@ -30,11 +30,14 @@ class FunctionGround:
     o4: Box
 
     @classmethod
-    def of(cls, wanted: Requirements) -> FunctionGround:
-        """By limits of o2, o4, r1, link_length and the ground angle; in a region the pivot has one place."""
+    def of(cls, wanted: Requirements, wish: float = 1.0) -> FunctionGround:
+        """By limits of o2, o4, r1, link_length and the ground angle; in a region the pivot has one place.
+
+        Where these leave the length free it is the one wished for, or the nearest to it.
+        """
         o2, o4 = standing(wanted.o2), standing(wanted.o4)
         low, high = wanted.r1 or wanted.link_length or (0.0, np.inf)
-        usual = float(np.clip(1.0, low, high))
+        usual = float(np.clip(wish, low, high))
         sides = [(g[0] - m[1], g[1] - m[0]) for m, g in ((o2.x, o4.x), (o2.y, o4.y))]
         if (fixed := wanted.angle_of("ground_angle_deg")) is not None:
             theta1 = fixed
@@ -46,7 +49,7 @@ class FunctionGround:
             low, high = max(low, least), min(high, most)
         if high < low <= high * (1 + _ROUNDING):
             low = high
-        return cls(theta1, (low, high), float(np.clip(1.0, low, max(low, high))) or 1.0, o2, o4)
+        return cls(theta1, (low, high), float(np.clip(wish, low, max(low, high))) or wish, o2, o4)
 
     def placed(self, r1: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """O2 and O4 for a length, O2 as near to the origin as it may."""
@@ -67,7 +70,9 @@ class FunctionGround:
 
 def grounded(task: Task, wanted: Requirements) -> Task:
     """A function with the usual length of the ground within the requirements; any other task unchanged."""
-    return task.with_ground(FunctionGround.of(wanted).length) if task.has_output.any() else task
+    if not task.has_output.any():
+        return task
+    return task.with_ground(FunctionGround.of(wanted, task.usual_ground).length)
 
 
 def _along(cosine: float, side: Limits) -> Limits:

@@ -106,6 +106,11 @@ class GeneratedOutput:
         return f"{self.input_words} from the first pair ({self.counted_from.of(length_unit)})"
 
     @property
+    def usual_ground(self) -> float:
+        """Length of the ground link where nothing limits it: 1, or the stroke of a cylinder."""
+        return float(self.inputs[-1]) if self.lengthens else 1.0
+
+    @property
     def rate_unit(self) -> float:
         """Factor from rates d(output)/d(input) inside to those in files."""
         return self.counted_in.shown / self.counted_from.shown

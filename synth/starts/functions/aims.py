@@ -64,7 +64,7 @@ class FunctionAims:
         wanted = problem.requirements.resolved(task.size)
         kind, unit = scaled.kind.generators[task.link], task.output_unit
         if task.lengthens:
-            kind, wanted = BY_CYLINDER[kind], _with_scale(wanted, float(task.inputs[-1]))
+            kind, wanted = BY_CYLINDER[kind], _with_scale(problem.requirements, wanted, task.usual_ground)
         names, sizes = kind.sizes(wanted, unit)
         rotatability, offset = wanted.rotatability or Rotatability.ANY, wanted.offset
         lengths = [_over(each, unit) for each in sizes]
@@ -265,12 +265,10 @@ def _triangle(problem: Problem, wanted: Requirements, travel: float | None) -> T
     )
 
 
-def _with_scale(wanted: Requirements, stroke: float) -> Requirements:
-    """The requirements; where none limits r1, it is as long as the stroke of the cylinder."""
-    low, high = wanted.link_lengths[0]
-    ground = FunctionGround.of(wanted).lengths
-    free = max(low, ground[0]) <= 0 and min(high, ground[1]) == np.inf
-    return replace(wanted, r1=(stroke, stroke)) if free else wanted
+def _with_scale(stated: Requirements, wanted: Requirements, usual: float) -> Requirements:
+    """The requirements; where none of those stated limits r1 it has its usual length."""
+    free = FunctionGround.of(stated).lengths == (0.0, np.inf)
+    return replace(wanted, r1=(usual, usual)) if free else wanted
 
 
 def _over(limits: Limits, unit: float) -> Limits:

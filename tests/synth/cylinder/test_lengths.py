@@ -134,3 +134,31 @@ def test_planted_functions_are_found(seed: int, count: int) -> None:
         check(each, problem, 1e-6)
     again = restored(plain(found.best), problem)
     assert again.verdict.cylinder == found.best.verdict.cylinder
+
+
+KINDS = {
+    "four-bar": ("output", [0, 20, 42]),
+    "coupler of a four-bar": ("coupler", [0, -12, -20]),
+    "inverted-slider-crank": ("output", [0, 20, 42]),
+    "slider-crank": ("output", [0, 60, 130]),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_is_found_and_without_limits_its_size_suits_the_stroke(kind: str) -> None:
+    link, outputs = KINDS[kind]
+    travels = kind == "slider-crank"
+    task = FunctionTask(
+        [0, 50, 100], outputs if travels else np.radians(outputs), lengthens=True, link=link, travels=travels
+    )
+    wanted = Requirements(rotatability="any")
+    problem = Problem(
+        task=task, requirements=wanted, mechanism=kind.split()[-1], driver=CylinderSpec(closed=(200, 600))
+    )
+    found = synthesize(problem, enough=2)
+    assert len(found)
+    for each in found.candidates:
+        assert each.verdict.output_error.max() < 1e-6 * (130 if travels else 1)
+        assert 200 - 1e-6 <= each.values["cylinder_closed"] <= 600 + 1e-6
+        assert 1 < np.max(each.linkage.lengths) < 1e4
