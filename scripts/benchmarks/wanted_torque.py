@@ -7,7 +7,7 @@ The judge has the last word on both.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from time import perf_counter
+from time import process_time
 from types import SimpleNamespace
 from typing import Any
 
@@ -243,8 +243,8 @@ def centre(places: ComplexArray) -> ComplexArray:
 def by_circles(problem: Problem, seconds: float, seed: int) -> float:
     """The least deviation of a simplex search of that time, as the judge has it; N m."""
     circles, rng, least = Circles.of(problem), np.random.default_rng(seed), np.inf
-    until = perf_counter() + seconds
-    while perf_counter() < until:
+    until = process_time() + seconds
+    while process_time() < until:
         sense = int(rng.choice([-1, 1]))
         x = np.exp(rng.uniform(-2.5, 1.5, (DRAWS, 1))) * rng.normal(size=(DRAWS, 4)) + circles.first
         values = circles.deviations(x, sense)
@@ -258,8 +258,8 @@ def by_circles(problem: Problem, seconds: float, seed: int) -> float:
 
 def by_points(problem: Problem, seconds: float) -> float:
     """The least error of rounds of the independent search in that time, m."""
-    until, least, tried, potential = perf_counter() + seconds, np.inf, 0, Potential.of(problem)
-    while perf_counter() < until or not tried:
+    until, least, tried, potential = process_time() + seconds, np.inf, 0, Potential.of(problem)
+    while process_time() < until or not tried:
         found = search(problem, STARTS, tried, potential)
         least, tried = min(least, np.inf if found is None else found.error), tried + 1
     return float(least)
@@ -285,9 +285,9 @@ def compared(
     worst = 0.0
     for number in range(count):
         problem = draw(np.random.default_rng([seed, number]))
-        begun = perf_counter()
+        begun = process_time()
         result = synthesize(problem)
-        seconds, ours = perf_counter() - begun, result.best.values[key] if result else np.inf
+        seconds, ours = process_time() - begun, result.best.values[key] if result else np.inf
         theirs = other(problem, EFFORT * seconds, number)
         worst = max(worst, ours / theirs)
         yield f"task {number}: {ours:.6g} in {seconds:.1f} s, independent {theirs:.6g}, {ours / theirs:.4f}"
