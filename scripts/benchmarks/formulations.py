@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from independent_geometry import elbow
+from independent_limits import elbow
 
 from grashof.problems import Box, FourBar, Problem, Requirements, Task
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray

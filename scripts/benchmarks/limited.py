@@ -8,9 +8,9 @@ those of the processor.
 
 import json
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -20,14 +20,26 @@ from independent_search import search
 from measuring import Case, spread, timed
 
 from grashof import synthesize
-from grashof.analysis import Verdict, solve_position
-from grashof.analysis.judge.planted import planted_path
-from grashof.problems import Box, Linkage, PathTask, Problem, Requirements, Rotatability, TargetLimits
+from grashof.analysis import solve_position
+from grashof.analysis.judge.planted import planted_function, planted_path
+from grashof.problems import (
+    Box,
+    FunctionTask,
+    PathTask,
+    Problem,
+    Region,
+    Requirements,
+    Rotatability,
+    TargetLimits,
+)
 from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.values.arrays import ComplexArray
+from grashof.synth import Candidate
 
 DATA = Path(__file__).parents[2] / "tests" / "data"
 KNOWN, RANDOM = DATA / "limited.json", DATA / "limited_random.json"
 NEAR = 1.02
+WANTED = Requirements(exact=False, rotatability=Rotatability.ANY, transmission_min_deg=10)
 
 
 def problem_of(text: str, name: str) -> Problem:
@@ -94,47 +106,130 @@ def efforts(count: int, seed: int) -> Iterator[str]:
     yield summary(ratios)
 
 
-def _ratio(linkage: Linkage, _: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+def _ratio(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
     """The ratio of two links, away from that of the best design without limits."""
-    return {
-        "link_ratios": {
-            "r4/r2": min(float(linkage.lengths[3] / linkage.lengths[1] * rng.uniform(1.1, 1.5)), 15.0)
-        }
-    }
+    lengths = free.linkage.lengths
+    return {"link_ratios": {"r4/r2": min(float(lengths[3] / lengths[1] * rng.uniform(1.1, 1.5)), 15.0)}}
 
 
-def _toggle(_: Linkage, verdict: Verdict, _rng: np.random.Generator) -> dict[str, Any]:
+def _toggle(free: Candidate, _: float, _rng: np.random.Generator) -> dict[str, Any]:
     """A toggle at the last target."""
-    return {"at": (TargetLimits(targets=[len(verdict.theta2)], past_deg=(2, 5)),)}
+    return {"at": (TargetLimits(targets=[len(free.verdict.theta2)], past_deg=(2, 5)),)}
 
 
-def _place(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+def _place(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
     """Places of A at the first target that begin beyond the best one."""
-    least = float(solve_position(linkage, verdict.theta2[0]).a[0]) + rng.uniform(0.02, 0.1)
+    least = float(_joints(free)[1][0].real) + rng.uniform(0.02, 0.1)
     return {"at": (TargetLimits(targets=[1], a=Box(x=(least, np.inf))),)}
 
 
-def _distance(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+def _polygon_o2(free: Candidate, size: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A triangle for O2, beside the best place."""
+    return {"o2": _triangle(_joints(free)[0], size, rng)}
+
+
+def _polygon_a(free: Candidate, size: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A triangle for A at every target, from which the best circle of A juts out."""
+    return {"a": _triangle(_joints(free)[1], size, rng)}
+
+
+def _polygon_at(free: Candidate, size: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A triangle for B at one target, beside the best place there."""
+    b = _joints(free)[2]
+    k = int(rng.integers(len(b)))
+    return {"at": (TargetLimits(targets=[k + 1], b=_triangle(b[[k]], size, rng)),)}
+
+
+def _segment(free: Candidate, size: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A segment for O4, which passes the best place at some distance."""
+    middle, ahead = free.linkage.o4 @ [1, 1j], _direction(rng)
+    ends = middle + size * ahead * (rng.uniform(0.05, 0.25) + 0.6j * np.array([-1, 1]))
+    return {"o4": Region(on=_pairs(ends))}
+
+
+def _centre(free: Candidate, size: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A half-plane for the instant centre at one target, beyond the best place."""
+    o2, a, b = _joints(free)
+    o4 = free.linkage.o4 @ [1, 1j]
+    k, driver, output = int(rng.integers(len(a))), a - o2, b - o4
+    share = ((o4 - o2).conjugate() * output).imag / (driver.conj() * output).imag
+    least = float((o2 + share * driver)[k].imag) + rng.uniform(0.1, 0.4) * size
+    return {"at": (TargetLimits(targets=[k + 1], instant_centre=Box(y=(least, np.inf))),)}
+
+
+def _advantage(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A mechanical advantage at the target where the best design has the least one."""
+    (o2, a, b), o4 = _joints(free), free.linkage.o4 @ [1, 1j]
+    arms = [np.abs(((b - a).conj() * (end - pivot)).imag) for end, pivot in ((b, o4), (a, o2))]
+    advantage = arms[0] / arms[1]
+    k = int(np.argmin(advantage))
+    least = float(advantage[k] * rng.uniform(1.2, 2))
+    return {"at": (TargetLimits(targets=[k + 1], mechanical_advantage_min=least),)}
+
+
+def _transmission(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A transmission angle at one target, above the best design's."""
+    a, b = _joints(free)[1:]
+    mu = np.degrees(np.abs(np.angle((b - a) / (b - free.linkage.o4 @ [1, 1j]))))
+    mu = np.minimum(mu, 180 - mu)
+    k = int(np.argmin(mu))
+    least = float(min(mu[k] + rng.uniform(10, 30), 85))
+    return {"at": (TargetLimits(targets=[k + 1], transmission_min_deg=least),)}
+
+
+def _distance(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
     """Distances of A from O4 that are greater than the least of the best design."""
-    a = solve_position(linkage, verdict.theta2).a
-    least = float(np.hypot(*(a - linkage.o4).T).min())
+    least = float(np.abs(_joints(free)[1] - free.linkage.o4 @ [1, 1j]).min())
     return {"distances": {"a-o4": (least * rng.uniform(1.05, 1.2), 1e6)}}
 
 
-def _direction(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+def _heading(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
     """A direction of the coupler at the middle target beyond that of the best design."""
-    middle = len(verdict.theta2) // 2
-    theta3 = solve_position(linkage, verdict.theta2[middle], verdict.assembly[middle]).theta3
-    low = float(np.degrees(np.angle(np.exp(1j * theta3))) + rng.uniform(3, 10))
+    a, b = _joints(free)[1:]
+    middle = len(a) // 2
+    low = float(np.degrees(np.angle((b - a)[middle])) + rng.uniform(3, 10))
     return {"at": (TargetLimits(targets=[middle + 1], coupler_angle_deg=(low, low + 50)),)}
 
 
-LIMITS = {
+def _joints(free: Candidate) -> tuple[complex, ComplexArray, ComplexArray]:
+    """O2, and A and B at every target."""
+    at = solve_position(free.linkage, free.verdict.theta2, free.verdict.assembly)
+    o2, a, b = (
+        np.asarray(place, dtype=np.complex128) @ np.array([1, 1j]) for place in (free.linkage.o2, at.a, at.b)
+    )
+    return complex(o2), a, b
+
+
+def _triangle(places: complex | ComplexArray, size: float, rng: np.random.Generator) -> Region:
+    """A triangle wide enough for the places, which some of them are outside."""
+    middle, ahead = np.mean(places), _direction(rng)
+    radius = float(np.abs(places - middle).max())
+    wide = 0.9 * size + 2 * radius
+    begins = rng.uniform(0.05, 0.25) * size - 0.6 * radius
+    return Region(inside=_pairs(middle + ahead * (begins + wide * np.array([-0.9j, 1.2, 0.9j]))))
+
+
+def _direction(rng: np.random.Generator) -> complex:
+    return complex(np.exp(1j * rng.uniform(-np.pi, np.pi)))
+
+
+def _pairs(places: ComplexArray) -> list[tuple[float, float]]:
+    return [(place.real, place.imag) for place in places.tolist()]
+
+
+LIMITS: dict[str, Callable[[Candidate, float, np.random.Generator], dict[str, Any]]] = {
     "link_ratios": _ratio,
     "toggle": _toggle,
     "place at a target": _place,
+    "polygon for O2": _polygon_o2,
+    "polygon for A": _polygon_a,
+    "polygon at a target": _polygon_at,
+    "segment": _segment,
+    "instant centre": _centre,
+    "advantage at a target": _advantage,
+    "transmission at a target": _transmission,
     "distances": _distance,
-    "coupler at a target": _direction,
+    "coupler at a target": _heading,
 }
 
 
@@ -142,18 +237,43 @@ def beside_independent(name: str, count: int, seed: int) -> Iterator[str]:
     """Least errors under a limit that binds, beside those of the independent search, of random paths."""
     ratios = list[float]()
     for number in range(seed, seed + count):
-        rng = np.random.default_rng([11, number])
-        task, _ = planted_path(rng, points=9)
-        noisy = PathTask(task.positions + rng.normal(0, 0.02 * task.size, task.positions.shape))
-        wanted = Requirements(exact=False, rotatability=Rotatability.ANY, transmission_min_deg=10)
-        free = synthesize(Problem(task=noisy, requirements=wanted), seed=0).best
-        limits = LIMITS[name](free.linkage, free.verdict, rng)
-        problem = Problem(task=noisy, requirements=replace(wanted, **limits))
-        other, seconds = timed(partial(search, problem, seed=number), process_time)
-        error, took = searched(problem, seed=0)
-        ratios.append(ratio_to(None if other is None else other.error, error, problem))
-        yield f"{name} {number}: ours/independent {ratios[-1]:.4f}; {took:.1f} s and {seconds:.1f} s"
+        free = _free(number)
+        limits = LIMITS[name](free, free.problem.task.size, np.random.default_rng([12, number]))
+        problem = replace(free.problem, requirements=replace(WANTED, **limits))
+        ratios.append((yield from _beside(problem, f"{name} {number}", number)))
     yield summary(ratios)
+
+
+@cache
+def _free(number: int) -> Candidate:
+    """The design of least error of a random path, without further limits."""
+    rng = np.random.default_rng([11, number])
+    task, _ = planted_path(rng, points=9)
+    noisy = PathTask(task.positions + rng.normal(0, 0.02 * task.size, task.positions.shape))
+    found = synthesize(Problem(task=noisy, requirements=WANTED), seed=0).candidates
+    return min(found, key=lambda each: each.verdict.square)
+
+
+def couplers(count: int, seed: int) -> Iterator[str]:
+    """Least errors of coupler angles as functions, beside those of the independent search."""
+    ratios = list[float]()
+    for number in range(seed, seed + count):
+        rng = np.random.default_rng([11, number])
+        task, _, _ = planted_function(rng, 8, link="coupler")
+        outputs = task.outputs + rng.normal(0, 0.02 * np.ptp(task.outputs), len(task))
+        noisy = FunctionTask(task.inputs, outputs - outputs[0], link="coupler")
+        problem = Problem(task=noisy, requirements=WANTED)
+        ratios.append((yield from _beside(problem, f"coupler {number}", number)))
+    yield summary(ratios)
+
+
+def _beside(problem: Problem, name: str, seed: int) -> Generator[str, None, float]:
+    """A line on one problem; returns the ratio of both least errors."""
+    other, seconds = timed(partial(search, problem, seed=seed), process_time)
+    error, took = searched(problem, seed=0)
+    ratio = ratio_to(None if other is None else other.error, error, problem)
+    yield f"{name}: ours/independent {ratio:.4f}; {took:.1f} s and {seconds:.1f} s"
+    return ratio
 
 
 CASES = [
@@ -161,6 +281,7 @@ CASES = [
         Case(f"beside an independent search: {name}", 10, partial(beside_independent, name))
         for name in LIMITS
     ),
+    Case("beside an independent search: coupler angle", 10, couplers),
     Case("known tasks", 12, partial(against_known, KNOWN, 5)),
     Case("random tasks", 60, partial(against_known, RANDOM, 1)),
     Case("efforts", 72, efforts),

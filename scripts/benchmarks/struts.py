@@ -13,7 +13,7 @@ from time import process_time
 from typing import Any
 
 import numpy as np
-from independent_geometry import elbow
+from independent_limits import elbow
 from measuring import Case
 
 from grashof import load, synthesize

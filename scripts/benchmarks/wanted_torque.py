@@ -12,7 +12,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from independent_geometry import elbow
+from independent_limits import elbow
 from independent_search import STARTS, search
 from measuring import Case
 from scipy.optimize import minimize

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -13,11 +15,13 @@ from grashof.synth.programme.user_functions import FAR, own_violations
 from grashof.synth.quantities.along_motion import ALONG, allowed_along, along_motion, unit_along
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.screening import GROUPS, Screened, inside, points_kept_out
+from grashof.synth.quantities.screening import GROUPS, Screened, depth_in, inside, points_kept_out
 from grashof.synth.quantities.wanted_torque import DEVIATIONS
 
-_SAMPLES = 13  # driver angles, the targets' ends among them
-_ALONG = np.array([0.2, 0.4, 0.6, 0.8])  # of a link
+# Driver angles, the targets' ends among them, and places along a link or a side of the body: of all linkages,
+# and of those that seem to be clear. Narrow areas pass between few samples.
+_COARSE = 13, np.linspace(0, 1, 6)[1:-1]
+_FINE = 61, np.linspace(0, 1, 13)[1:-1]
 _ROWS = 4000  # linkages at a time
 
 
@@ -63,6 +67,14 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
 
 def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """Greatest depth (n,), sizes, inside areas kept out, over sampled angles; the judge is more precise."""
+    deepest = _depth(scaled, linkages, *_COARSE)
+    clear = deepest == 0
+    deepest[clear] = _depth(scaled, linkages[clear], *_FINE)
+    return deepest
+
+
+def _depth(scaled: ScaledProblem, linkages: Screened, samples: int, along: FloatArray) -> FloatArray:
+    """The same over so many driver angles, at these shares of links and of the sides of the body."""
     wanted = scaled.wanted
     kind = scaled.kind.linkage.mechanism
     names = [name for name in points_kept_out(wanted) if name in kind.moving]
@@ -70,29 +82,53 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     deepest = np.zeros(len(linkages))
     for begin in range(0, len(linkages) if names or len(body) else 0, _ROWS):
         rows = slice(begin, begin + _ROWS)
-        places = _places(scaled.kind, linkages[rows])
+        places = _places(scaled.kind, linkages[rows], samples)
         tracks = [places[name] for name in names]
         if links:
             for one, other in (line for link in kind.links[1:] for line in link.lines):
-                tracks += [places[one] + share * (places[other] - places[one]) for share in _ALONG]
+                tracks += [places[one] + share * (places[other] - places[one]) for share in along]
         if len(body):
             turned = (places["b"] - places["a"]) * np.exp(1j * _from_coupler(scaled, linkages[rows]))[:, None]
-            turned /= np.abs(turned)
-            tracks += [places["p"] + turned * corner for corner in body]
+            with np.errstate(invalid="ignore"):
+                turned /= np.abs(turned)
+            tracks += [places["p"] + turned * point for point in _around(body, along)]
         track = np.concatenate(tracks, axis=1)
-        closed = np.isfinite(track)
-        deepest[rows] = np.where(closed, inside(wanted, np.where(closed, track, 0.0)), 0.0).max(axis=1)
+        deepest[rows] = _deepest(partial(inside, wanted), track)
+        if len(body):
+            corners = np.concatenate(wanted.keep_out) @ np.array([1, 1j])
+            seen = [(corner - places["p"]) * turned.conj() for corner in corners]  # from the body
+            within = _deepest(partial(_inside_body, body), np.concatenate(seen, axis=1))
+            deepest[rows] = np.maximum(deepest[rows], within)
     return deepest
 
 
+def _deepest(depth: Callable[[ComplexArray], FloatArray], track: ComplexArray) -> FloatArray:
+    """Greatest depth (n,) of places (n, k), without those where a linkage does not close."""
+    closed = np.isfinite(track)
+    greatest: FloatArray = np.where(closed, depth(np.where(closed, track, 0.0)), 0.0).max(axis=1)
+    return greatest
+
+
+def _inside_body(body: ComplexArray, points: ComplexArray) -> FloatArray:
+    """Depth of points (...) inside the body, in its frame."""
+    from grashof.problems.values.areas import shape  # imports shapely, as few problems need it
+
+    return depth_in(shape(np.column_stack([body.real, body.imag]), is_line=False), points)
+
+
 def _body(scaled: ScaledProblem) -> ComplexArray:
-    """Points along the outline of the body, in its frame, where it must keep out of areas; else none."""
+    """Corners of the body, in its frame, where it must keep out of areas; else none."""
     outline = scaled.problem.task.body
     if "body" not in scaled.wanted.keep_out_for or outline is None:
         return np.zeros(0, dtype=np.complex128)
-    corner = outline @ np.array([1, 1j]) / scaled.frame.scale
-    side = np.roll(corner, -1) - corner
-    points: ComplexArray = (corner[:, None] + np.concatenate([[0.0], _ALONG]) * side[:, None]).ravel()
+    corners: ComplexArray = outline @ np.array([1, 1j]) / scaled.frame.scale
+    return corners
+
+
+def _around(body: ComplexArray, along: FloatArray) -> ComplexArray:
+    """Corners of the body, and points at these shares of its sides."""
+    side = np.roll(body, -1) - body
+    points: ComplexArray = (body[:, None] + np.append(0.0, along) * side[:, None]).ravel()
     return points
 
 
@@ -105,12 +141,13 @@ def _from_coupler(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     return turn
 
 
-def _places(kind: Kind, linkages: Screened) -> dict[str, ComplexArray]:
+def _places(kind: Kind, linkages: Screened, samples: int) -> dict[str, ComplexArray]:
     """Pivots and coupler point at sampled driver angles, each shape (n, samples)."""
     o2, o4 = linkages.points.T[:2, :, None]
     ground, lengths, arm = kind.sides(linkages.points[:, None])
     theta2, assembly = linkages.theta2, linkages.assembly
-    angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * np.linspace(0, 1, _SAMPLES)
+    share = (1 - np.cos(np.linspace(0, np.pi, samples))) / 2  # closer towards the ends, which touch areas
+    angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * share
     crank = lengths[1] * np.exp(1j * angle)
     _, _, r3, r4 = lengths
     coupler, along = coupler_of(kind.dyad, ground, crank, r3, r4, assembly[:, None])

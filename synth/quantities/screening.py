@@ -284,12 +284,16 @@ def points_kept_out(wanted: Requirements) -> tuple[str, ...]:
 def inside(wanted: Requirements, points: ComplexArray) -> FloatArray:
     """Depth of points (...) inside the areas of the requirements; zero outside."""
     # Here, not above: shapely takes a while to import, and few problems have areas.
-    import shapely
-
     from grashof.problems.values.areas import solid
 
+    return depth_in(solid(wanted.keep_out), points)
+
+
+def depth_in(area: Any, points: ComplexArray) -> FloatArray:
+    """Depth of points (...) inside a geometry of shapely; zero outside."""
+    import shapely  # as above
+
     found = np.zeros(points.shape)
-    area = solid(wanted.keep_out)
     within = shapely.contains_xy(area, points.real, points.imag)
     places = shapely.points(points.real[within], points.imag[within])
     found[within] = shapely.distance(shapely.boundary(area), places)
@@ -332,16 +336,20 @@ def _kept_inside(
 ) -> tuple[Configurations, FloatArray]:
     """Drivers, some of which (`rows`) meet the targets at angles `inside` of a range they cannot leave."""
     visit, theta2, violations = found.visit.copy(), found.theta2.copy(), violations.copy()
+    direction = found.direction.copy()
     if ordered:  # out of order, the angles stay those of a driver that could turn
         step = np.diff(inside, axis=1)
-        violations[rows, GROUPS.index("order")] = np.minimum(
-            (-step).max(axis=1, initial=0.0), step.max(axis=1, initial=0.0)
-        )
+        disorder = np.minimum((-step).max(axis=1, initial=0.0), step.max(axis=1, initial=0.0))
+        violations[rows, GROUPS.index("order")] = disorder
+        # two targets are in order either way; here only one is open
+        back = (disorder <= 0) & ((inside[:, -1] - inside[:, 0]) * direction[rows] < 0)
+        theta2[rows[back]] = inside[back]
+        direction[rows[back]] *= -1
     else:
         sequence = np.argsort(inside, axis=1)
         visit[rows] = np.take_along_axis(visit[rows], sequence, axis=1)
         theta2[rows] = np.take_along_axis(inside, sequence, axis=1)
-    return replace(found, visit=visit, theta2=theta2), violations
+    return replace(found, visit=visit, theta2=theta2, direction=direction), violations
 
 
 def _rotatability_violation(view: Many, wanted: Requirements) -> FloatArray:

@@ -33,6 +33,7 @@ STRIDE, STRIDES = (
     0.3,
     3,
 )  # sizes: greatest move of a six-bar's pivots in a solve; greatest number of such solves
+NEARER = (0.2, 0.05, 0.01)  # sizes: neighbourhoods of starts that are tried where farther solves end in areas
 # Fields that can be tightened.
 TIGHTENED = {
     "within", "transmission_min_deg", "size",
@@ -90,10 +91,34 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
         done = polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
     may_move = scaled.has_targets and start.terms.settled and finder.freedom
     if done is None or (may_move and not done.verified):
-        done = (_solved if start.second is None else _in_strides)(scaled, start, number)
+        done = (_clear if start.second is None else _in_strides)(scaled, start, number)
     if cognates and done.verified and finder.cognates:
         done = replace(done, cognates=verified_alike(scaled, done.verified[0], start.terms.most_error))
     return done
+
+
+def _clear(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
+    """A solve; where it moves parts into areas between the targets, one nearer to the start, or none.
+
+    No constraint keeps parts out of areas between the targets, but starts are screened there.
+    """
+    done = _solved(scaled, start, number)
+    wanted = scaled.wanted
+    swept = bool(wanted.keep_out) and bool(
+        set(wanted.keep_out_for) - set(scaled.kind.linkage.mechanism.ground)
+    )
+    if done.verified or done.candidate is None or not swept or start.terms.relaxed:
+        return done
+    if {defect.requirement for defect in done.candidate.verdict.defects} != {"keep_out"}:
+        return done
+    as_it_is = polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
+    if not as_it_is.verified:
+        return done
+    for radius in NEARER:
+        near = _solved(scaled, start.under(radius=min(radius, start.terms.radius)), number)
+        if near.verified and _key(scaled, near) < _key(scaled, as_it_is):
+            return near
+    return as_it_is
 
 
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:

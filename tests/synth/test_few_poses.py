@@ -7,9 +7,12 @@ import pytest
 
 from grashof import synthesize
 from grashof.analysis import solve_position
+from grashof.analysis.mechanism.mobility import rotatability
 from grashof.problems import MotionTask, Problem, ProblemError, Requirements
 from grashof.problems.files.problem_schema import problem_from
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import refuse_unsearchable
+from grashof.synth.starts.exact_poses import FewPoses
 
 A, B = [0, 0, 0], [3, 1, 60]
 
@@ -96,3 +99,20 @@ def test_timed_poses_at_one_place_are_not_left_to_a_single_pivot() -> None:
     assert result.note.endswith(
         'a link on a pivot there carries the body, and kind = "function" finds its drive'
     )
+
+
+def test_a_driver_that_cannot_turn_goes_from_one_of_two_poses_to_the_other_within_its_range() -> None:
+    task = MotionTask.from_degrees([[0, 0, 0], [2, 1, 140]])
+    wanted = Requirements(rotatability="any", transmission_min_deg=10, link_length=(0.5, 4))
+    scaled = ScaledProblem.of(Problem(task=task, requirements=wanted))
+    finder = FewPoses(scaled)
+    found = finder.pairs(finder.dyads(np.random.default_rng(0), samples=400), 20_000)
+    found = found[found.feasible][:300]
+    ranged = 0
+    for k, linkage in enumerate(scaled.linkages(found.points, found.assembly)):
+        start, end = found.theta2[k]
+        p = solve_position(linkage, np.linspace(start, end, 60)).p
+        assert np.isfinite(p).all()
+        assert (end - start) * found.direction[k] > 0
+        ranged += rotatability(linkage).min() < 0
+    assert ranged > 50

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import shapely
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position
@@ -12,9 +13,10 @@ from grashof.synth import Candidate, Result
 
 QUICK = ["toggle-clamp"]
 SLOW = [
-    "bicycle-suspension", "bus-wiper", "container-lid", "drag-brace", "excavator-bucket", "garage-door-track",
-    "jewellery-box-lid", "kitchen-flap", "robot-intake", "steering", "trunk-lid", "trunk-lid-struts",
-    "twelve-timed",
+    "bicycle-suspension", "bus-wiper", "container-lid", "drag-brace", "excavator-bucket", "folding-table",
+    "garage-door-track", "greenhouse-door", "jewellery-box-lid", "kitchen-flap", "outboard-flap",
+    "robot-intake", "steering", "tool-chest-lid", "trunk-lid", "trunk-lid-struts", "twelve-timed",
+    "wall-bed-shelf",
 ]  # fmt: skip
 
 
@@ -23,14 +25,17 @@ def solved(name: str) -> Result:
     return synthesize(load(name), seed=0, enough=4)
 
 
-def poses(design: Candidate) -> np.ndarray:
-    """O2, A, B, O4 at the targets by the law of cosines, complex, shape (4, N)."""
+def poses(design: Candidate, samples: int = 0) -> np.ndarray:
+    """O2, A, B, O4 at the targets, or samples of the motion, by the law of cosines, complex, shape (4, N)."""
     linkage, theta2 = design.linkage, design.verdict.theta2
+    sign = np.asarray(design.verdict.assembly)
+    if samples:
+        theta2, sign = np.linspace(theta2[0], theta2[-1], samples), sign[0]
     o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
     a = o2 + linkage.r2 * np.exp(1j * theta2)
     s = np.abs(o4 - a)
     at_a = np.arccos((s**2 + linkage.r3**2 - linkage.r4**2) / (2 * s * linkage.r3))
-    b = a + linkage.r3 * (o4 - a) / s * np.exp(1j * np.asarray(design.verdict.assembly) * at_a)
+    b = a + linkage.r3 * (o4 - a) / s * np.exp(1j * sign * at_a)
     return np.stack([np.full_like(a, o2), a, b, np.full_like(a, o4)])
 
 
@@ -41,7 +46,13 @@ def test_there_are_verified_designs(name: str) -> None:
     assert all(each.verdict.ok for each in result.candidates)
 
 
-@pytest.mark.parametrize("name", ["toggle-clamp", pytest.param("drag-brace", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "toggle-clamp",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("drag-brace", "folding-table")),
+    ],
+)
 def test_locks_are_2_to_5_deg_past_their_line(name: str) -> None:
     for each in solved(name).candidates:
         o2, a, b, _ = poses(each)
@@ -51,10 +62,11 @@ def test_locks_are_2_to_5_deg_past_their_line(name: str) -> None:
 
 
 @pytest.mark.slow
-def test_the_brace_joins_the_leg_near_p() -> None:
-    design = solved("drag-brace").best
+@pytest.mark.parametrize("name", ["drag-brace", "folding-table"])
+def test_the_brace_joins_the_leg_near_p(name: str) -> None:
+    design = solved(name).best
     u, v = design.linkage.coupler_point
-    assert np.hypot(u - design.linkage.r3, v) < 10  # mm, of 900
+    assert np.hypot(u - design.linkage.r3, v) < 10  # mm, of 900 and 350
 
 
 @pytest.mark.slow
@@ -233,3 +245,49 @@ def test_the_suspension_is_progressive() -> None:
         assert 440 * np.radians(0.260) - 1e-4 <= leverage[0] <= 440 * np.radians(0.287) + 1e-4
         assert 440 * np.radians(0.315) - 1e-4 <= leverage[-1] <= 440 * np.radians(0.345) + 1e-4
         assert each.values["cylinder_closed"] == pytest.approx(165, abs=1e-5)
+
+
+@pytest.mark.slow
+def test_the_shelf_of_the_wall_bed_stays_level_by_equal_arms() -> None:
+    for each in solved("wall-bed-shelf").candidates:
+        one = each.linkage
+        assert one.r2 == pytest.approx(one.r4, rel=1e-9)
+        assert one.r1 == pytest.approx(one.r3, rel=1e-9)
+        _, a, b, _ = poses(each)
+        assert np.ptp(np.angle(b - a)) < 1e-9
+
+
+@pytest.mark.slow
+def test_all_pivots_of_the_flap_are_within_the_profile() -> None:
+    problem = load("outboard-flap")
+    wing, flap = (shapely.Polygon(getattr(problem.requirements, key).corners) for key in ("o2", "a_on_body"))
+    for each in solved("outboard-flap").candidates:
+        o2, a, b, o4 = poses(each)
+        at = problem.task.positions @ [1, 1j]
+        on_flap = (np.array([a, b]) - at) * np.exp(-1j * problem.task.angles)
+        assert np.ptp(on_flap, axis=1).max() < 1e-6
+        for area, place in ((wing, o2[0]), (wing, o4[0]), (flap, on_flap[0, 0]), (flap, on_flap[1, 0])):
+            assert shapely.distance(area, shapely.Point(place.real, place.imag)) < 1e-6
+
+
+@pytest.mark.slow
+def test_the_lid_of_the_tool_chest_clears_the_handle_on_links_that_cross() -> None:
+    problem = load("tool-chest-lid")
+    (kept_out,), lid = problem.requirements.keep_out, problem.task.body @ [1, 1j]
+    area, crossing = shapely.Polygon(kept_out).buffer(-1e-6), []
+    for each in solved("tool-chest-lid").candidates:
+        one = each.linkage
+        _, a, b, o4 = poses(each, 500)
+        links = [(one.o2 @ [1, 1j], a), (o4[0], b)]
+        crossing.append(any(crossed(links, k) for k in range(500)))
+        turned = (b - a) / np.abs(b - a)
+        p = a + turned * complex(*one.coupler_point)
+        for corner in (p[:, None] + lid * (turned * np.exp(1j * one.body_angle))[:, None]).tolist():
+            assert not shapely.Polygon([(z.real, z.imag) for z in corner]).intersects(area)
+    assert any(crossing)
+
+
+def crossed(links: list[tuple[complex, np.ndarray]], k: int) -> bool:
+    """Whether two links cross at sample k."""
+    one, other = (shapely.LineString([(o.real, o.imag), (e[k].real, e[k].imag)]) for o, e in links)
+    return bool(shapely.crosses(one, other))

@@ -2,7 +2,7 @@
 Lids and doors
 ==============
 
-Four bodies that a hand moves: their positions are known, and hinges have to be found that fit into the little
+Six bodies that a hand moves: their positions are known, and hinges have to be found that fit into the little
 room beside them.
 """
 
@@ -46,4 +46,24 @@ garage = load("garage-door-track")
 best = synthesize(garage, enough=6).best
 plot_linkage(best, garage)
 print(garage.source)
+assert best.verdict.ok
+
+# %%
+# The lid of a tool chest has to get over the carrying handle at its back edge. Two poses and the area of
+# chest and handle are all that is stated; the links of the best designs cross on the way.
+
+chest = load("tool-chest-lid")
+best = synthesize(chest, enough=6).best
+plot_linkage(best, chest)
+print(chest.source)
+assert best.verdict.ok
+
+# %%
+# The door of a table greenhouse, roof and front wall in one piece, folds up and back. Of the second and third
+# pose only the place of its lower corner counts.
+
+greenhouse = load("greenhouse-door")
+best = synthesize(greenhouse, enough=6).best
+plot_linkage(best, greenhouse)
+print(greenhouse.source)
 assert best.verdict.ok

@@ -43,3 +43,14 @@ plot_linkage(best, clamp)
 print(clamp.source)
 print(f"{past(best):.2f} deg past toggle")
 assert 2 - 1e-6 <= past(best) <= 5 + 1e-6
+
+# %%
+# The leg of a folding table has the brace of the landing gear, smaller: folded flat under the top, and locked
+# when it is upright.
+
+table = load("folding-table")
+best = synthesize(table, enough=6).best
+plot_linkage(best, table)
+print(table.source)
+print(f"{past(best):.2f} deg past toggle")
+assert 2 - 1e-6 <= past(best) <= 5 + 1e-6

@@ -16,6 +16,7 @@ from grashof.synth import Result
 from grashof.synth.programme.whole_screening import depth_on_the_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
+from grashof.synth.starts.exact_poses import FewPoses
 from grashof.synth.theory.distinct import signature
 
 AS_GIVEN = [[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]]
@@ -185,3 +186,24 @@ def test_a_look_at_the_way_agrees_with_the_judge(
         assert deep <= max(judged, default=0.0) + 1e-9
         assert max(judged, default=0.0) <= deep + 0.2
     assert seen == {True, False}
+
+
+@pytest.mark.slow
+def test_a_body_does_not_jump_over_a_narrow_area() -> None:
+    """Of linkages seen to be clear, whose body sweeps past a thin handle, few are a little inside it."""
+    scaled = ScaledProblem.of(load("tool-chest-lid"))
+    finder = FewPoses(scaled)
+    pairs = finder.pairs(finder.dyads(np.random.default_rng(1), samples=2000), 40_000)
+    clear = pairs[pairs.feasible]
+    assert 20 < len(clear) < 0.1 * len(pairs)
+    task, wanted = scaled.problem.task, scaled.problem.requirements
+    clear = clear[:: len(clear) // 20]
+    verdicts = [
+        verify(each.changed(body_angle=scaled.motion.first_turn - angle), task, wanted)
+        for each, angle in zip(
+            scaled.linkages(clear.points, clear.assembly), np.angle(clear.coupler[:, 0]), strict=True
+        )
+    ]
+    misses = [defect.miss for verdict in verdicts for defect in verdict.defects]
+    assert sum(verdict.ok for verdict in verdicts) > 0.4 * len(verdicts)
+    assert max(misses, default=0.0) < 0.04
