@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from dataclasses import replace
 
-from grashof.synth.designs.efforts import with_parts
+from grashof.synth.designs.efforts import with_best_parts
 from grashof.synth.designs.families import listed
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.claims.proof import best_listed, proof_of
@@ -20,7 +20,6 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.history import RunHistory, StopCondition, now
 from grashof.synth.search.ledger import CHOICE, LISTED, Ledger
 from grashof.synth.search.run import Run
-from grashof.synth.theory.stopping import overdue
 
 PLACED = (
     24  # designs that get struts and springs: the first of a list, which begins with the best of families
@@ -44,9 +43,7 @@ def conclude(
         _LOG.info("explanation: %s", explanation.note)
     problem, ledger = scaled.problem, ledgers[-1]
     designs = listed(problem, chosen.designs or explanation.designs)
-    designs = tuple(
-        with_parts(each) if k < PLACED and not overdue() else each for k, each in enumerate(designs)
-    )
+    designs = with_best_parts(designs)
     run.ended()
     if atlas is not None:
         regions = atlas.regions_of(scaled, designs)
