@@ -121,7 +121,8 @@ class Aim:
             frames[each] = Frame(np.broadcast_to(_complex(origin.position), axis.shape), axis, drift, turn)
         known = np.isfinite(state.without)
         without = np.where(known, counted * state.without, 0.0)
-        scale = float(np.abs(without).max(initial=0.0)) or 1.0
+        sizes = np.abs(np.concatenate([without, least, most]))
+        scale = float(sizes[np.isfinite(sizes)].max(initial=0.0)) or 1.0
         parts = tuple(_part(part, bare, places) for part in case.spec.parts)
         return cls(frames, parts, without, per, least, most, state.friction, times, _ABOUT_STROKES, scale)
 

@@ -9,8 +9,9 @@ from grashof.synth.effort.aim import INSET, Aim, Found
 from grashof.synth.theory import minimax
 from grashof.synth.theory.stopping import overdue
 
-_DRAWN, _PARENTS, _CHILDREN, _ROUNDS = 3000, 48, 24, 32
+_DRAWN, _PARENTS, _CHILDREN, _ROUNDS = 3000, 48, 24, 32  # of one part; twice and more of two
 _SIZES = 4  # tried at first for each place
+_LIKE = 0.05  # share of a stroke by which sizes are overstepped alike
 _FIRST, _NARROWER = 0.3, 0.82  # share of the areas that a step spans, and its factor after each round
 _PENALTY = 10.0  # of a stroke that is overstepped by all of it, in scales of the effort
 _COARSE = 3  # steps between samples that suffice to compare
@@ -27,10 +28,13 @@ def best_by_search(aim: Aim, seed: int) -> tuple[FloatArray, IntArray] | None:
     x, rows = _drawn(coarse, rng)
     score = _scores(coarse, x, rows)
     best = np.argsort(score, kind="stable")
-    best = best[_apart(x[best], rows[best], _PARENTS)]
+    many = len(aim.parts) ** 2  # two parts have many more optima
+    best = best[_apart(x[best], rows[best], _PARENTS * len(aim.parts))]
     x, rows, _ = _closed_in(coarse, x[best], rows[best], score[best], rng)
-    kept = _apart(x, rows, _FINISHED)
-    found = [_finished(aim, x[k], rows[k]) for k in kept if not overdue()] or [(x[0], rows[0])]
+    kept = _apart(x, rows, _FINISHED * many)
+    found = [_finished(aim, x[k], rows[k], _BESIDE * many) for k in kept if not overdue()] or [
+        (x[0], rows[0])
+    ]
     judged = aim.at(np.array([each for each, _ in found]), np.array([each for _, each in found]))
     kept_strokes = judged.margins.reshape(len(found), -1).min(axis=1, initial=0.0) >= -INSET / 2
     excess = np.where(kept_strokes, judged.excess.max(axis=1), np.inf)
@@ -40,16 +44,15 @@ def best_by_search(aim: Aim, seed: int) -> tuple[FloatArray, IntArray] | None:
 
 def _drawn(aim: Aim, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
     """Random places, and for each of the parts sizes whose strokes they suit best, with any force."""
-    count = _DRAWN
-    x = np.repeat(rng.random((count, aim.unknowns)), _SIZES, axis=0)
+    x = np.repeat(rng.random((_DRAWN * len(aim.parts), aim.unknowns)), _SIZES, axis=0)
     rows = np.empty((len(x), len(aim.parts)), dtype=np.intp)
     for number, part in enumerate(aim.parts):
         length, _ = aim.lengths(number, x[::_SIZES])
         low, high = length.min(axis=1, keepdims=True), length.max(axis=1, keepdims=True)
         stroke = part.longest - part.shortest
         past = np.maximum(part.shortest - low, 0) / stroke + np.maximum(high - part.longest, 0) / stroke
-        tie = 0.05 * rng.random((_SIZES, *past.shape))
-        rows[:, number] = (past + tie).argmin(axis=-1).T.ravel()
+        for k in range(_SIZES):
+            rows[k::_SIZES, number] = (past + _LIKE * rng.random(past.shape)).argmin(axis=1)
     return x, rows
 
 
@@ -102,11 +105,11 @@ def _apart(x: FloatArray, rows: IntArray, most: int, least: float = 0.05) -> lis
     return kept
 
 
-def _finished(aim: Aim, x: FloatArray, rows: IntArray) -> tuple[FloatArray, IntArray]:
+def _finished(aim: Aim, x: FloatArray, rows: IntArray, most: int) -> tuple[FloatArray, IntArray]:
     """A candidate at its least greatest excess, also with the other sizes that do best at its places."""
     best = _polished(aim, x, rows)
     score = float(_scores(aim, best[None], rows[None])[0])
-    for _ in range(_BESIDE):
+    for _ in range(most):
         others = [each for each in _best_sizes(aim, best, rows, 3) if (each != rows).any()]
         tried = [(_polished(aim, best, each, _TRIED), each) for each in others if not overdue()]
         if not tried:

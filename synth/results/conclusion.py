@@ -22,9 +22,7 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.history import RunHistory, StopCondition, now
 from grashof.synth.search.ledger import CHOICE, LISTED, Ledger
 from grashof.synth.search.run import Run
-from grashof.synth.theory.stopping import overdue
 
-PLACED = (
     24  # designs that get struts and springs: the first of a list, which begins with the best of families
 )
 _LOG = logging.getLogger(__name__)
@@ -117,9 +115,9 @@ def _with_parts(designs: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     """The designs, the first of them with struts and springs where the problem states an effort."""
     if not designs or not designs[0].problem.states(Needs.EFFORT):
         return designs
-    from grashof.synth.designs.efforts import with_parts
+    from grashof.synth.designs.efforts import with_best_parts
 
-    return tuple(with_parts(each) if k < PLACED and not overdue() else each for k, each in enumerate(designs))
+    return with_best_parts(designs)
 
 
 def _advice(problem: Problem) -> str:
