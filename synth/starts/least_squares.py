@@ -35,7 +35,7 @@ from grashof.synth.starts.loop_search import (
 from grashof.synth.starts.thinning import refined, thinned
 from grashof.synth.theory.stopping import raise_if_overdue
 
-DRAWS, TIMED_DRAWS = 2000, 600
+DRAWS, TIMED_DRAWS = 2000, 600  # of a round; as many more where limits bind, whose minima are narrower
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
 FEW_TARGETS = 40  # of a longer task decide which linkages are worth the rest
 # Where no limit binds: numbers of the best that continue, and their steps.
@@ -48,7 +48,7 @@ SAME_ERROR = 1e-3  # share: a feasible linkage nearer to the best one shows that
 SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
 # Where limits bind: numbers of the best distinct ones that continue, their steps, and the weight of the
 # limits (in sizes).
-STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
+STAGES = ((800, 8, 0.3), (600, 10, 1.0), (300, 20, 5.0), (100, 100, 5.0))
 LONG, LONG_STEPS = 24, 20  # linkages of a thinned task that are improved on all targets, and their steps
 LAST_STEPS = 200  # and the best of them until little is gained
 LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
@@ -147,7 +147,8 @@ def _limited_round(
     scaled: ScaledProblem, rng: np.random.Generator, drawn: Batch, best: Batch, size: int
 ) -> Round:
     """Starts of the search under every limit, from drawn linkages and those that fit best."""
-    before_limits, found = _search(scaled, drawn, best, size)
+    more = draw(thinned(SearchTargets.of(scaled), FEW_TARGETS)[0], len(drawn), rng, ASTRAY)
+    before_limits, found = _search(scaled, joined(drawn, more), best, size)
     linkages, error = _ranked(scaled, found)
     share = size * min(1.0, max(AMPLE / len(scaled.targets), FEWEST))
     first, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
