@@ -23,8 +23,6 @@ from grashof.synth.search.history import RunHistory, StopCondition, now
 from grashof.synth.search.ledger import CHOICE, LISTED, Ledger
 from grashof.synth.search.run import Run
 
-    24  # designs that get struts and springs: the first of a list, which begins with the best of families
-)
 _LOG = logging.getLogger(__name__)
 
 
