@@ -47,7 +47,7 @@ def coupler_motion(linkage: Linkage, task: Task, verdict: Verdict) -> CouplerMot
     >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
     >>> found = coupler_motion(linkage, task, verify(linkage, task, Requirements()))
     >>> np.degrees([found.angle_min, found.angle_max]).round(3).tolist()
-    [61.026, 130.377]
+    [-144.006, 20.296]
     """
     used = as_used(linkage, verdict)
     theta2 = sampled(used, *motion_ends(task, verdict))

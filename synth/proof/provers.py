@@ -34,7 +34,7 @@ def _provers(
         from grashof.synth.proof.strokes.cover import bounds_of_stroke
 
         yield bounds_of_stroke
-    elif scaled.motion is not None:
+    elif scaled.exact and scaled.problem.task.is_whole:
         from grashof.synth.proof.poses.four_poses import bounds_of_four
 
         yield bounds_of_four

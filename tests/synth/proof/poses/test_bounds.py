@@ -24,7 +24,8 @@ from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.branch_and_bound import Search
-from grashof.synth.proof.provers import bounds_before, bounds_of, bounds_of_three
+from grashof.synth.proof.poses.three_poses import bounds_of_three
+from grashof.synth.proof.provers import bounds_before, bounds_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import stopping
 from grashof.wording.proof import bound_line
