@@ -20,7 +20,7 @@ from grashof import load, synthesize
 from grashof.analysis.effort.case import EffortCase
 from grashof.analysis.effort.deviation import effort_figures
 from grashof.analysis.judge.effort_travel import effort_of_design
-from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements, Rotatability
+from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatability
 from grashof.problems.files.effort_schema import usual_sizes
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
@@ -77,9 +77,8 @@ class Moves:
 
 def moves(problem: Problem, case: EffortCase) -> Moves:
     """The body along the travel, by the elbow formula; its sense is that of the judge."""
-    linkage, spec = case.linkage, case.spec
-    if not isinstance(linkage, FourBar):
-        raise TypeError("other kinds are not known here")
+    linkage: Any = case.linkage  # a four-bar
+    spec = case.spec
     places = np.linspace(case.travel.start, case.travel.end, STEPS)
     at = case.travel.at(places)
     theta2, side = at.theta2, np.sign(at.margins[0])

@@ -144,13 +144,6 @@ def test_where_only_the_way_is_obstructed_the_closest_miss_is_shown(
 
 
 @pytest.mark.slow
-def test_a_target_inside_is_named(relaxing_only: Callable[..., None]) -> None:
-    relaxing_only("keep_out")
-    result = synthesize(luggage([[1, 2], [3, 2], [3, 4.5], [1, 4.5]], keep_out_for=["p"]), starts=4)
-    assert "keep_out drawn in by 1, the depth of P" in result.note
-
-
-@pytest.mark.slow
 def test_a_path_keeps_its_pivots_out() -> None:
     line = load("path-vertical-line")
     free = synthesize(line, enough=8)
