@@ -127,6 +127,7 @@ def test_an_end_stays_on_its_segment() -> None:
     assert -60 <= x <= 140
 
 
+@pytest.mark.slow
 def test_two_parts_are_no_worse_than_one() -> None:
     one = PartSpec("gas", (FOOT, HEAD), GAS)
     two = PartSpec("torsion", (1, 4), COILS, free_angle_deg=(0.0, 180.0))
