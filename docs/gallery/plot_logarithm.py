@@ -31,7 +31,7 @@ plot_linkage(best, problem)
 
 curves = function_curves(best.linkage, problem.task, best.verdict)
 figure, ax = plt.subplots()
-ax.plot(np.degrees(curves.turned), np.degrees(curves.error))
+ax.plot(np.degrees(curves.inputs), np.degrees(curves.error))
 worst = np.degrees(best.verdict.structural_error_max)
 for side in (worst, -worst):
     ax.axhline(side, color="0.6", linewidth=1)

@@ -128,7 +128,7 @@ def test_benchmarks_of_searches_measure(run: Any) -> None:
     assert "best transmission 30.17" in run("catalogue", "limit 12", 1)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_benchmark_of_struts_measures(run: Any) -> None:
     """The independent search has the same effort in mind as the judge: it comes close to the other."""
     found = re.search(r"design 1: (.*) N in .* independently (.*) N in", run("struts", "trunk", 1))

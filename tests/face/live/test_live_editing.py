@@ -124,7 +124,7 @@ def test_corners_are_inserted_on_sides_and_removed_by_key_and_by_button(places: 
     assert places.locator("[data-remove]").is_disabled()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_crossed_polygon_shows_its_error_until_it_is_simple(places: Page) -> None:
     (x0, _), (x1, _) = place_of(places, "O2 region 0"), place_of(places, "O2 region 1")
     unit = (x1 - x0) / 7  # px

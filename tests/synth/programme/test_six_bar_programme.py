@@ -146,7 +146,7 @@ def test_second_loop_turns_between_its_instants() -> None:
     assert found.linkage.r5 == pytest.approx(0.5, abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_search_continues_from_its_best_finds() -> None:
     problem = load("klann-leg").for_kind("stephenson-3")
     best = synthesize(problem, seed=0).best

@@ -148,7 +148,7 @@ def test_a_limit_of_the_deviation_is_kept_while_another_goal_decides() -> None:
         assert best[key] > 0.9 * most  # the limit binds
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_points_and_torques_that_a_linkage_has_are_fitted_together() -> None:
     problem, _ = planted_path_torque(2, 6)
     assert problem.torque is not None
