@@ -17,7 +17,7 @@ from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import virtual_power
 from grashof.analysis.mechanism.kinematics import Kinematics, virtual_motion
 from grashof.problems import DynamicsSpec, Linkage, ProblemError
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, turned_from
 from grashof.problems.values.dynamics.effort import SQUARE, EffortSpec
 
 _AT_REST = 1e-12  # share of the greatest speed of the point: no motion
@@ -118,7 +118,7 @@ class EffortCase:
         near = np.interp(place, dense, turned)
         first = float(self._direction(np.array([self.travel.start]))[0])
         rest = self._direction(place) - first - near
-        exact = near + (rest + np.pi) % (2 * np.pi) - np.pi
+        exact = near + turned_from(rest, 0.0)
         sign = np.sign(turned[-1] + turned[0])  # one of them is that of the start, 0
         return np.asarray(np.degrees(sign * exact))
 
@@ -149,9 +149,7 @@ class EffortCase:
         """Velocities that the linkage allows, finite in dead positions, the rest there, and their sense."""
         at = self.travel.at(np.asarray(places, dtype=np.float64))
         side = np.copysign(1.0, at.margins[0])
-        virtual, rest = virtual_motion(
-            self.linkage, at.theta2, side
-        )  # of a driver that never turns clockwise
+        virtual, rest = virtual_motion(self.linkage, at.theta2, side)  # its driver never turns clockwise
         way = 1.0 if self.travel.end >= self.travel.start else -1.0
         return virtual, rest, way * (np.ones(rest.shape) if self.travel.turns else side)
 

@@ -10,7 +10,7 @@ from grashof.analysis.forces.from_spec import JOINT_OF
 from grashof.analysis.forces.joints import joint_motion
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems import Linkage, ProblemError
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, turned_from
 from grashof.problems.values.dynamics.struts import BODY, EffortPlace, PartSize, PartSpec
 
 
@@ -93,8 +93,7 @@ def _turned(
 ) -> PartState:
     """A torsion spring, whose moment grows evenly with its turn from the free angle, either way."""
     joint, free = JOINT_OF[part.joint], 0.0 if part.free_angle_deg is None else part.free_angle_deg[0]
-    turned = np.degrees(joint_motion(rest, joint)[0]) - free
-    turned = (turned + 180) % 360 - 180
+    turned = turned_from(np.degrees(joint_motion(rest, joint)[0]), free, 360.0)
     rate = sense * joint_motion(virtual, joint)[1]
     moment = -part.count * size.moment * turned / size.turn_deg / metre
     return PartState(

@@ -14,7 +14,7 @@ from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import DeadPositionWarning, Linkage, Task
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ def coupler_motion(linkage: Linkage, task: Task, verdict: Verdict) -> CouplerMot
     def curves(angles: FloatArray) -> FloatArray:
         state = solve_kinematics(used, angles, 1.0, 0.0)
         near = np.interp(angles, theta2, on_the_way)
-        theta3 = near + np.angle(np.exp(1j * (state.theta3 - near)))
+        theta3 = near + turned_from(state.theta3, near)
         return np.stack([theta3, -theta3, state.omega3, -state.omega3])
 
     with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
@@ -71,8 +71,16 @@ def _driven(linkage: Linkage, task: Task, verdict: Verdict) -> CouplerMotion:
     moved = None if verdict.cylinder is None else cylinder_travel(linkage, task, verdict)
     if moved is None:
         return CouplerMotion(np.nan, np.nan, np.nan, np.nan)
-    theta3 = np.unwrap(moved.at(moved.places).theta3)
-    return _motion(float(theta3.min()), float(theta3.max()), -np.inf, np.inf)
+    places, at = moved.places, moved.at
+    on_the_way = np.unwrap(at(places).theta3)
+
+    def curves(there: FloatArray) -> FloatArray:
+        near = np.interp(there, places, on_the_way)
+        theta3 = near + turned_from(at(there).theta3, near)
+        return np.stack([theta3, -theta3])
+
+    high, low = peaks(curves, [places])[0].ravel().tolist()
+    return _motion(-low, high, -np.inf, np.inf)
 
 
 def _motion(low: float, high: float, slow: float, fast: float) -> CouplerMotion:

@@ -11,7 +11,7 @@ import numpy as np
 from grashof.analysis.effort.case import EffortCase
 from grashof.analysis.effort.parts import place_on
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, turned_from
 from grashof.problems.values.dynamics.struts import BODY, EffortPlace, PartSpec
 
 _ABOUT_STROKES = 49  # samples over the travel, on which strokes are kept
@@ -160,7 +160,7 @@ class Aim:
         if one.angle is not None and one.turn is not None:
             low, high = one.spec.free_angle_deg or (0.0, 0.0)
             free = (high - low) * (x[:, first, None] - 0.5)
-            return (one.angle - free + 180) % 360 - 180, np.broadcast_to(one.turn, (len(x), len(one.turn)))
+            return turned_from(one.angle, free, 360.0), np.broadcast_to(one.turn, (len(x), len(one.turn)))
         out: Any = 0.0j
         speed: Any = 0.0j
         for end, (area, sign) in enumerate(zip(one.ends, (-1, 1), strict=True)):
@@ -255,7 +255,7 @@ def _part(part: PartSpec, case: EffortCase, places: FloatArray) -> Part:
         return Part(part, warmth, part.count * last, slope, longest, longest - stroke, friction, ends)
     turned, rate = case.joint_turn(part.joint, places)
     low, high = part.free_angle_deg or (0.0, 0.0)
-    turned = (turned - (low + high) / 2 + 180) % 360 - 180
+    turned = turned_from(turned, (low + high) / 2, 360.0)
     moment = np.array([part.count * size.moment / size.turn_deg for size in sizes]) / case.metre
     most = np.array([size.turn_deg for size in sizes])
     return Part(part, warmth, moment, 0 * moment, most, -most, friction / case.metre, angle=turned, turn=rate)

@@ -29,10 +29,8 @@ AS_IT_IS = "Not_Solved"  # status of a design that was judged as the search prop
 # `MORE` solves at most are tightened by `BEYOND` times the miss, unless it exceeds a limit (as in
 # `Defect.miss`; share of a zone).
 MORE, BEYOND, A_LITTLE, OF_ZONE = 5, 1.05, 0.2, 1e-4
-STRIDE, STRIDES = (
-    0.3,
-    3,
-)  # sizes: greatest move of a six-bar's pivots in a solve; greatest number of such solves
+STRIDE = 0.3  # sizes: greatest move of a six-bar's pivots in a solve
+STRIDES = 3  # most solves with such moves
 NEARER = (0.2, 0.05, 0.01)  # sizes: neighbourhoods of starts that are tried where farther solves end in areas
 # Fields that can be tightened.
 TIGHTENED = {

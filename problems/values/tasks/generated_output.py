@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Self
 
 import numpy as np
@@ -13,7 +14,7 @@ from grashof.problems.values.tasks.function_law import FunctionLaw
 from grashof.problems.values.units import Unit
 
 
-class GeneratedOutput:
+class GeneratedOutput(ABC):
     """The output of a linkage, wanted as a function of its input; base of `Task`.
 
     The input is the driver's rotation or the lengthening of a cylinder, each from the first target.
@@ -39,9 +40,9 @@ class GeneratedOutput:
     #: Driver rotation from the beginning of the range, rad, at which the linkage is its own mirror image.
     mirror: float | None = None
 
+    @abstractmethod
     def __len__(self) -> int:
         """Number of targets."""
-        raise NotImplementedError
 
     @property
     def driver_turns(self) -> FloatArray:
@@ -63,9 +64,9 @@ class GeneratedOutput:
         return self
 
     @property
+    @abstractmethod
     def size(self) -> float:
         """The full travel of a slide, where that is the output."""
-        raise NotImplementedError
 
     def output_links(self, mechanism: Mechanism) -> tuple[int, ...]:
         """The links of a linkage whose turning is its output: the last one, none where that slides."""

@@ -132,7 +132,7 @@ def _wanted(case: EffortCase, state: EffortState) -> dict[str, FloatArray]:
 
 def _facts(case: EffortCase, figures: EffortFigures) -> Iterator[Fact]:
     yield Fact("effort_travel_deg", "effort: rotation over the travel", case.total_deg, "deg")
-    yield from _deviation("", "", figures.deviation)
+    yield from _deviation(figures.deviation)
     if case.spec.parts:
         yield Fact(
             "effort_without_deviation",
@@ -142,15 +142,15 @@ def _facts(case: EffortCase, figures: EffortFigures) -> Iterator[Fact]:
         )
 
 
-def _deviation(key: str, words: str, found: Deviation) -> Iterator[Fact]:
-    label = f"effort: greatest deviation from what is wanted{words}"
-    yield Fact(f"effort{key}_deviation", label, found.greatest, "N")
+def _deviation(found: Deviation) -> Iterator[Fact]:
+    greatest = "effort: greatest deviation"
+    yield Fact("effort_deviation", f"{greatest} from the wanted one", found.greatest, "N")
     if found.excess > 0:
-        yield Fact(f"effort{key}_deviation_of", "effort: it is from", found.words)
-        yield Fact(f"effort{key}_deviation_angle_deg", "effort: it is at", found.angle_deg, "deg")
-        yield Fact(f"effort{key}_deviation_temperature_c", "effort: it is at", found.temperature_c, "°C")
+        yield Fact("effort_deviation_of", f"{greatest}: key of the demand", found.words)
+        yield Fact("effort_deviation_angle_deg", f"{greatest}: angle", found.angle_deg, "deg")
+        yield Fact("effort_deviation_temperature_c", f"{greatest}: temperature", found.temperature_c, "°C")
     else:
-        yield Fact(f"effort{key}_margin", "effort: least margin to the limits", -found.excess, "N")
+        yield Fact("effort_margin", "effort: least margin to the limits", -found.excess, "N")
 
 
 def _part_facts(study: LinkageStudy, case: EffortCase, index: int, figures: EffortFigures) -> Iterator[Fact]:

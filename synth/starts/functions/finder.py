@@ -52,10 +52,10 @@ class Functions(DesignFinder):
         if not self.aims.exact:
             return "least errors were looked for at every transmission angle"
         count, kind = len(self.aims.task), self.aims.kind
+        if self.aims.triangle is not None:
+            return f"{self.aims.kinds} through the {count} pairs were looked for under many cylinders"
         if count >= kind.EXACT:
             have = "most sets of five have one, or three" if kind.EXACT == 5 else "most sets of four have one"
-            if self.aims.triangle is not None:
-                return f"{self.aims.kinds} through the {count} pairs were looked for under many cylinders"
             return f"all {self.aims.kinds} through the {count} pairs were looked at; {have}"
         return f"no more distinct {self.aims.kinds} go through the pairs under these requirements"
 
@@ -175,8 +175,10 @@ class Functions(DesignFinder):
         """Limits that contradict each other; pairs that no linkage goes through."""
         if self.aims.obstacle or not self.aims.exact or counts.get(FINDS):
             return self.aims.obstacle
-        pairs = f"the {len(self.aims.task)} pairs on one branch under these requirements"
-        return f"no {self.aims.kinds[:-1]} goes through {pairs}"
+        pairs = f"through the {len(self.aims.task)} pairs on one branch under these requirements"
+        if self.aims.triangle is not None:  # some cylinders of many
+            return f"no {self.aims.kinds[:-1]} was found {pairs}"
+        return f"no {self.aims.kinds[:-1]} goes {pairs}"
 
     def _round(
         self, batch: Sequence[tuple[Generators, int]], *, skip: int = 0, together: bool = False

@@ -164,8 +164,8 @@ class Mirrored:
 class MirroredFunctions(Functions):
     """Four-bars of least error that are their own mirror image at a driver rotation.
 
-    Two numbers state them, so that all are looked at: round 0 lists the least errors, the others, a round for
-    each angle, those that transmit so much.
+    Two numbers state them, so that a grid covers them: round 0 lists the least errors, the others, a round
+    for each transmission angle, the least error of those that have it.
     """
 
     beginning: ClassVar[str] = "looking for mirrored linkages that generate the function"
@@ -193,7 +193,7 @@ class MirroredFunctions(Functions):
     def onward(
         self, _designs: Sequence[Candidate], _misses: Sequence[Candidate] = (), /
     ) -> list[Linkage | DrivenLinkage]:
-        """None: all were looked at."""
+        """None: the grid covers them."""
         return []
 
     def follow(self, design: Candidate) -> list[Linkage | DrivenLinkage]:

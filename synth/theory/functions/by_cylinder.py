@@ -33,6 +33,13 @@ class ByCylinder(Generators):
 
     by_angle: ClassVar[type[Generators]]
 
+    def __init_subclass__(cls) -> None:
+        """The triangle adds as many unknowns, and pairs that are met."""
+        super().__init_subclass__()
+        cls.UNKNOWNS, cls.EXACT = (
+            number + _OF_TRIANGLE for number in (cls.by_angle.UNKNOWNS, cls.by_angle.EXACT)
+        )
+
     @classmethod
     def of(cls, batch: Generators, triangles: FloatArray) -> Self:
         """Generators (M,) with a triangle each, or all with the same, (M, 3) or (3,), in logarithms."""
@@ -105,29 +112,21 @@ class FourBarsByCylinder(ByCylinder, FourBars):
     """Four-bars whose link 4 follows the cylinder's length."""
 
     __slots__ = ()
-    by_angle, UNKNOWNS, EXACT = FourBars, FourBars.UNKNOWNS + _OF_TRIANGLE, FourBars.EXACT + _OF_TRIANGLE
+    by_angle = FourBars
 
 
 class CouplerFourBarsByCylinder(ByCylinder, CouplerFourBars):
     """Four-bars whose coupler follows the cylinder's length."""
 
     __slots__ = ()
-    by_angle, UNKNOWNS, EXACT = (
-        CouplerFourBars,
-        FourBars.UNKNOWNS + _OF_TRIANGLE,
-        FourBars.EXACT + _OF_TRIANGLE,
-    )
+    by_angle = CouplerFourBars
 
 
 class SliderCranksByCylinder(ByCylinder, SliderCranks):
     """Slider-cranks whose slide follows the cylinder's length."""
 
     __slots__ = ()
-    by_angle, UNKNOWNS, EXACT = (
-        SliderCranks,
-        SliderCranks.UNKNOWNS + _OF_TRIANGLE,
-        SliderCranks.EXACT + _OF_TRIANGLE,
-    )
+    by_angle = SliderCranks
 
 
 class InvertedSliderCranksByCylinder(ByCylinder, InvertedSliderCranks):
@@ -135,8 +134,6 @@ class InvertedSliderCranksByCylinder(ByCylinder, InvertedSliderCranks):
 
     __slots__ = ()
     by_angle = InvertedSliderCranks
-    UNKNOWNS = InvertedSliderCranks.UNKNOWNS + _OF_TRIANGLE
-    EXACT = InvertedSliderCranks.EXACT + _OF_TRIANGLE
 
 
 BY_CYLINDER: Mapping[type[Generators], type[ByCylinder]] = MappingProxyType(
