@@ -20,7 +20,7 @@ from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.finder import DesignFinder
 
-_TRADED = 1.001  # times the least error: designs with more traded it for something else
+_TRADED = 1.001  # times the least error: designs with more error have traded it for something else
 
 
 def track(

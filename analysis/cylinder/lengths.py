@@ -28,13 +28,13 @@ class CylinderState:
     Parameters
     ----------
     pivot : ndarray, shape (..., 2), length
-        Q, its pivot of the moving link.
+        Q, its pivot on the moving link.
     length : ndarray, shape (...), length
-        From C, its pivot of the ground, to Q.
+        From C, its pivot on the ground, to Q.
     rate : ndarray, shape (...), length
         dL/dtheta2; infinite in dead positions of link 2.
     output_rate : ndarray, shape (...), length
-        dL/dtheta4, the arm with which the force of the cylinder turns link 4; infinite in limit positions of
+        dL/dtheta4, the moment arm of the cylinder's force on link 4; infinite in limit positions of
         link 4, and where it does not turn at all.
     lever : ndarray, shape (...)
         |dL| / |dQ|: the sine of the angle between cylinder and arm, signed as dL in the motion of the linkage
@@ -101,7 +101,7 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 
     Notes
     -----
-    The links turn as the loop's derivative lets them (Norton, *Design of Machinery*, ch. 6), in
+    The links turn as the derivative of the loop allows (Norton, *Design of Machinery*, ch. 6), in
     a motion that has no infinite rates in dead positions; dL = dQ . (Q - C) / L.
 
     Examples
@@ -135,7 +135,7 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
     """Extremes of a cylinder over a motion, right to rounding, from ever closer samples.
 
-    The lever changes its sign where the length turns back: its least value, signed, decides on `monotone`.
+    The lever changes its sign where the length turns back, so its least signed value decides on `monotone`.
     The inverse of the rate, dtheta4/dL, is finite where the cylinder drives, and 0 where link 4 turns back.
     """
 

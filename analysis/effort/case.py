@@ -31,14 +31,14 @@ class EffortState:
     Parameters
     ----------
     angle_deg : ndarray, shape (N,), deg
-        Rotation from the start of the travel of the link, or driver, that angles are of.
+        Rotation, from the start of the travel, of the link of the effort or of the driver.
     without : ndarray, shape (N,), N
         The effort without struts and springs, and without friction; infinite where the point is at rest, or
-        moves square to a direction that is given.
+        moves perpendicular to a given direction.
     effort : ndarray, shape (T, N), N
-        With them, at each temperature, without friction.
+        The effort with struts and springs, at each temperature, without friction.
     friction : ndarray, shape (N,), N
-        By which the effort to move on is greater, and that to move back less.
+        Moving on takes the effort plus friction, moving back the effort minus friction.
     sense : ndarray, shape (N,)
         +1 where a positive effort moves the linkage on, -1 where it moves it back.
     parts : tuple of PartState
@@ -53,7 +53,7 @@ class EffortState:
 
     @property
     def opening(self) -> FloatArray:
-        """The effort in the sense of the travel, shape (T, N), N: positive where it has to be lifted."""
+        """The effort in the sense of the travel, shape (T, N), N: positive where it moves the linkage on."""
         return np.asarray(self.sense * self.effort)
 
 
@@ -64,7 +64,7 @@ class EffortCase:
     Raises
     ------
     ProblemError
-        A load is over time.
+        A load varies over time.
     """
 
     linkage: Linkage
@@ -81,7 +81,7 @@ class EffortCase:
 
     @property
     def spec(self) -> EffortSpec:
-        """What is wanted, and the parts."""
+        """The wanted effort, and the parts."""
         if self.dynamics.effort is None:
             raise ProblemError("effort is missing")
         return self.dynamics.effort
@@ -101,7 +101,7 @@ class EffortCase:
 
     @property
     def total_deg(self) -> float:
-        """Rotation over the entire travel, deg, positive."""
+        """Rotation over the entire travel, deg; positive."""
         turned = self._dense[1]
         return float(np.degrees(abs(turned[-1] - turned[0])))
 
@@ -119,7 +119,7 @@ class EffortCase:
         first = float(self._direction(np.array([self.travel.start]))[0])
         rest = self._direction(place) - first - near
         exact = near + turned_from(rest, 0.0)
-        sign = np.sign(turned[-1] + turned[0])  # one of them is that of the start, 0
+        sign = np.sign(turned[-1] + turned[0])  # one of them is 0, at the start
         return np.asarray(np.degrees(sign * exact))
 
     def place_at(self, angle_deg: float) -> float:
@@ -138,7 +138,7 @@ class EffortCase:
         return (low + high) / 2
 
     def _direction(self, places: FloatArray) -> FloatArray:
-        """Direction of the link that angles are of, rad."""
+        """Direction of the link of the effort, or of the driver, rad."""
         at = self.travel.at(places)
         if self.spec.over == "driver":
             return np.asarray(at.theta2)
@@ -146,7 +146,7 @@ class EffortCase:
         return np.asarray(at.angles[link])
 
     def motion(self, places: npt.ArrayLike) -> tuple[Kinematics, Kinematics, FloatArray]:
-        """Velocities that the linkage allows, finite in dead positions, the rest there, and their sense."""
+        """Virtual velocities, finite in dead positions; the linkage at rest; and the sense of the travel."""
         at = self.travel.at(np.asarray(places, dtype=np.float64))
         side = np.copysign(1.0, at.margins[0])
         virtual, rest = virtual_motion(self.linkage, at.theta2, side)  # its driver never turns clockwise

@@ -1,4 +1,4 @@
-"""How far the effort of a linkage is from the wanted one over its travel, and strokes that end within it."""
+"""The deviation of the effort of a linkage from the wanted one, and strokes that end inside the travel."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _SLACK = 1e-9  # share of a limit
 
 
 class Deviation(NamedTuple):
-    """The greatest excess of the effort over what is wanted, N; negative is a margin.
+    """The greatest excess of the effort over its limits, N; a negative one is a margin.
 
-    At a rotation of `angle_deg` from the start of the travel, at a temperature; `words` names what is wanted.
+    At a rotation of `angle_deg` from the start of the travel, at a temperature; `words` names the demand.
     """
 
     excess: float
@@ -31,12 +31,12 @@ class Deviation(NamedTuple):
 
     @property
     def greatest(self) -> float:
-        """The greatest deviation, N: 0 where the effort is as wanted."""
+        """The greatest deviation, N: 0 where the effort is within its limits."""
         return max(self.excess, 0.0)
 
 
 class Miss(NamedTuple):
-    """What an effort or a part misses, by its key in the file."""
+    """A limit that an effort or a part misses, by its key in the file."""
 
     key: str
     what: str
@@ -53,11 +53,11 @@ class EffortFigures:
     ----------
     deviation : Deviation
     without : Deviation
-        The same without struts and springs.
+        The deviation without struts and springs.
     lengths : tuple of pair of float, length
-        Least and greatest length of each part; of a torsion spring its turn, deg.
+        Least and greatest length of each part; for a torsion spring its turn, deg.
     misses : tuple of Miss
-        Parts whose stroke ends inside the travel, and demands beyond it.
+        Strokes that end inside the travel, and demands beyond it.
     """
 
     deviation: Deviation
@@ -67,7 +67,7 @@ class EffortFigures:
 
 
 def effort_figures(case: EffortCase) -> EffortFigures:
-    """The figures of an effort, right to rounding where its curves are smooth, from ever closer samples."""
+    """The figures of an effort from ever closer samples, exact to rounding where its curves are smooth."""
     lengths = tuple(_extremes(case, index) for index in range(len(case.spec.parts)))
     misses = (*_beyond_travel(case), *_beyond_stroke(case, lengths))
     return EffortFigures(_greatest(case, parts=True), _greatest(case, parts=False), lengths, misses)
@@ -77,7 +77,7 @@ def excess(demand: Demand, state: EffortState, *, parts: bool = True) -> FloatAr
     """Excess of the effort over a demand, shape (2, T, N), N: above its upper limit, and below the lower."""
     effort = state.effort if parts else np.broadcast_to(state.without, state.effort.shape)
     effort = state.sense * effort if demand.opening else effort
-    end = demand.end if np.isfinite(demand.end) else demand.start + 1  # where it changes nothing
+    end = demand.end if np.isfinite(demand.end) else demand.start + 1  # any finite value will do
     least, most = (
         np.interp(state.angle_deg, (demand.start, end), side) for side in (demand.least, demand.most)
     )

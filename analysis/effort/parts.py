@@ -16,20 +16,21 @@ from grashof.problems.values.dynamics.struts import BODY, EffortPlace, PartSize,
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartState:
-    """A strut or straight spring, or the equal ones of a pair, in some positions.
+    """A part, with all its equal ones side by side, in some positions.
 
     Parameters
     ----------
     length : ndarray, shape (N,), length
-        From pivot to pivot; of a torsion spring its turn from the free angle, deg.
+        From pivot to pivot; for a torsion spring its turn from the free angle, deg.
     rate : ndarray, shape (N,), length
-        Of the length, in the velocities of the motion; of a torsion spring of its turn, rad.
+        Rate of the length in the virtual motion; for a torsion spring rate of its turn, rad.
     force : ndarray, shape (N,), N
-        Of all of them together at 20 deg C, positive where it lengthens; N m over metre of a torsion spring.
+        Force of all of them together at 20 deg C, positive where it lengthens the part; for a torsion spring
+        N m over the length unit in metres.
     friction : float, N
-        The same of friction, against the motion.
+        Friction in the same unit, against the motion.
     ends : ndarray, shape (2, N, 2), length
-        Of both pivots; empty of a torsion spring.
+        Both pivots; empty for a torsion spring.
     """
 
     length: FloatArray
@@ -44,7 +45,7 @@ def part_state(
 ) -> PartState:
     """A placed part in some positions; velocities are those of `virtual` times `sense` (N,).
 
-    Between its two stated lengths the force of a strut or spring changes evenly.
+    Between its two stated lengths the force of a strut or spring changes linearly.
     """
     if not part.is_placed:
         raise ProblemError("a part of the effort is not placed yet; it must have one size, and points")
@@ -78,7 +79,7 @@ def force_at(size: PartSize, length: FloatArray) -> FloatArray:
 def place_on(linkage: Linkage, place: EffortPlace) -> tuple[int, tuple[float, float]]:
     """Link and point, in its frame, of a place that is a single point.
 
-    The guided body has its origin in P, and is turned by `body_angle` against the link that carries it.
+    The guided body has its origin in P, and is turned by `body_angle` relative to the link that carries it.
     """
     u, v = place.point
     if place.link != BODY:
@@ -91,7 +92,7 @@ def place_on(linkage: Linkage, place: EffortPlace) -> tuple[int, tuple[float, fl
 def _turned(
     part: PartSpec, size: PartSize, metre: float, virtual: Kinematics, rest: Kinematics, sense: FloatArray
 ) -> PartState:
-    """A torsion spring, whose moment grows evenly with its turn from the free angle, either way."""
+    """A torsion spring, whose moment is proportional to its turn from the free angle, either way."""
     joint, free = JOINT_OF[part.joint], 0.0 if part.free_angle_deg is None else part.free_angle_deg[0]
     turned = turned_from(np.degrees(joint_motion(rest, joint)[0]), free, 360.0)
     rate = sense * joint_motion(virtual, joint)[1]

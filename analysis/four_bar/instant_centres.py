@@ -21,7 +21,7 @@ class InstantCentres:
     Parameters
     ----------
     i12, i23, i34, i14 : ndarray
-        The joints O2, A, B, O4; NaN for that of a slide, at infinity square to it.
+        The joints O2, A, B, O4; NaN for that of a slide, at infinity perpendicular to it.
     i13 : ndarray
         Centre of rotation of the coupler: the intersection of O2A and O4B, or their counterparts with a
         slide.
@@ -67,7 +67,7 @@ def instant_centres(
     o2 = np.broadcast_to(linkage.o2, state.a.shape)
     none = np.full(state.a.shape, np.nan)
     o4 = np.broadcast_to(getattr(linkage, "o4", none), state.a.shape)
-    across = np.stack([np.cos(state.theta4), np.sin(state.theta4)], axis=-1)  # square to a slide
+    across = np.stack([np.cos(state.theta4), np.sin(state.theta4)], axis=-1)  # perpendicular to a slide
     of4 = state.b - o4, o4 - o2, state.b - state.a  # along I14-I34, I12-I14, I23-I34
     if (1, 4) in linkage.mechanism.slides:
         of4 = across, across, state.b - state.a

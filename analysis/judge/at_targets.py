@@ -93,7 +93,7 @@ def _moving(linkage: Linkage, verdict: Verdict, k: int) -> Kinematics:
 def past_toggle(linkage: Linkage, verdict: Verdict, k: int) -> float:
     """Angle of driver and coupler past toggle (O2, A and B in line) at target k, rad.
 
-    Positive where the motion from the first target, of the first one that back from the last, passes it.
+    Positive where the motion from the first target (for the first target, back from the last) passes it.
     """
     start, end = verdict.theta2[[0 if k else -1, k]].tolist()
     theta2 = np.linspace(start, end, SAMPLES)

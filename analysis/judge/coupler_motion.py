@@ -1,4 +1,4 @@
-"""The coupler in the task motion of judged linkages: its direction, and how fast it turns."""
+"""Direction and rate of the coupler in the task motion of judged linkages."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class CouplerMotion:
     Parameters
     ----------
     angle_min, angle_max : float, rad
-        Of the direction of link 3, the first of them above -pi to pi.
+        Direction of link 3; `angle_min` is above -pi and at most pi.
     rate_min, rate_max : float
-        Of its derivative by the driver angle; infinite where a cylinder carries the linkage through dead
-        positions of link 2.
+        Derivative of this direction with respect to the driver angle; infinite where a cylinder carries the
+        linkage through dead positions of link 2.
     """
 
     angle_min: float
@@ -67,7 +67,7 @@ def coupler_motion(linkage: Linkage, task: Task, verdict: Verdict) -> CouplerMot
 
 
 def _driven(linkage: Linkage, task: Task, verdict: Verdict) -> CouplerMotion:
-    """As a cylinder drives it through dead positions of link 2; NaN where none does."""
+    """The coupler where a cylinder drives it through dead positions of link 2; NaN without one."""
     moved = None if verdict.cylinder is None else cylinder_travel(linkage, task, verdict)
     if moved is None:
         return CouplerMotion(np.nan, np.nan, np.nan, np.nan)

@@ -1,4 +1,4 @@
-"""The effort of a linkage file: over its travel, or the task motion of a design out of a list."""
+"""The effort of a linkage file over its travel, or of a listed design over its task motion."""
 
 from __future__ import annotations
 

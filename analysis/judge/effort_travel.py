@@ -19,7 +19,7 @@ from grashof.problems.values.dynamics.effort import EffortSpec
 def effort_of_design(
     linkage: Linkage, problem: Problem, verdict: Verdict, effort: EffortSpec | None = None
 ) -> EffortCase | None:
-    """The effort over the task motion, by default that of the verdict with its parts, or of the problem.
+    """The effort over the task motion: by default that of the verdict with its parts, or of the problem.
 
     None where the problem states no effort, or no motion joins the targets.
     """

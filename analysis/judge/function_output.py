@@ -32,7 +32,7 @@ RATE_SLACK = 1e-9  # share of the greatest limit
 def output_error(
     linkage: Linkage, task: Task, begun: Beginning, inputs: FloatArray, sense: int
 ) -> FloatArray:
-    """Generated less wanted output but for a constant, at growing inputs (K,), rad or length.
+    """Generated less wanted output, up to a constant, at growing inputs (K,), rad or length.
 
     Positive where the output is ahead in the sense of the driver; NaN where the linkage cannot be assembled.
     """
@@ -46,10 +46,10 @@ def structural_error(
 ) -> tuple[FloatArray, dict[str, Any]] | None:
     """Generated less wanted output at the pairs (N,), rad or length, and the figures of a verdict.
 
-    None where the linkage cannot be assembled all over the range. Extremes are refined, the mean square is
+    None where the linkage cannot be assembled over the entire range. Extremes are refined, the mean square is
     a Gauss-Legendre sum between samples and pairs. The output's zero is the mean of the errors at the pairs,
-    or the middle of the extremes where the greatest counts and pairs need not be met; of a mirrored linkage
-    it lies in the mirrored position.
+    or the middle of the extremes where the greatest error counts and pairs need not be met; for a mirrored
+    linkage it lies in the mirrored position.
     """
     senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
@@ -99,7 +99,7 @@ def met_as_function(
 ) -> tuple[Targets, TaskMotion, dict[str, Any] | None, tuple[Defect, ...]]:
     """Driver angle and error at each pair, the motion, and the figures of the error, or None without one.
 
-    Last the defects against limits of the rate. Where the inputs are lengths of a cylinder, `cylinder`
+    Last, the defects of rates beyond their limits. Where the inputs are lengths of a cylinder, `cylinder`
     drives; without one there is no motion.
     """
     exact = wanted.is_exact(task)
@@ -113,7 +113,7 @@ def met_as_function(
         if task.mirror is not None:
             begun = begins_mirrored(linkage, task, by, senses) or begins_mirrored(linkage, task, by, (1, -1))
         begun = begun or begins(linkage, task, by, exact, start, senses, least)
-        # A linkage that misses a requirement from every start is reported where it errs least.
+        # A linkage that misses a requirement from every start is reported where its error is least.
         begun = begun or begins(linkage, task, by, exact, start, senses)
         begun = begun or begins(linkage, task, by, exact, start)
     met = begun or _nowhere(task, start)
@@ -133,7 +133,7 @@ def generated_rate(linkage: Linkage, task: Task, begun: Beginning, inputs: Float
     """Leverage ratio d(output)/d(input) of a linkage at inputs (K,), with the sign of its output."""
     by_driver = output_rate(linkage, task, begun.driver_angles(inputs))
     turned = begun.by.rate(begun.theta2, begun.direction, inputs)
-    # A rotation counts in the sense of the driver, and so does that of link 2.
+    # Rotations of the output and of link 2 count in the sense of the driver.
     return (begun.direction if task.travels else 1) * by_driver * turned
 
 
@@ -157,7 +157,7 @@ def _rate_defects(
 
 
 def _nowhere(task: Task, start: float | None) -> Beginning:
-    """Where a linkage begins that does not cover the range, turned by some cylinder where it has none."""
+    """Beginning of a linkage that does not cover the range, with an arbitrary cylinder where it has none."""
     if not task.lengthens:
         return Beginning(start or 0.0, 1, ByAngle())
     stroke = float(task.inputs[-1])
@@ -187,7 +187,22 @@ def function_curves(
 ) -> FunctionCurves | None:
     """Output of a judged linkage over the range of its function, or at given inputs.
 
-    None where it does not cover the range.
+    Parameters
+    ----------
+    linkage : Linkage
+    task : Task
+        A function.
+    verdict : Verdict
+        Of `verify` for this linkage and task.
+    count : int
+        Number of inputs, evenly spaced over the range.
+    at : ndarray, shape (K,), rad or length, optional
+        Inputs from the first pair, instead.
+
+    Returns
+    -------
+    FunctionCurves or None
+        None where the linkage does not cover the range.
 
     Examples
     --------

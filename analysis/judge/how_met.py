@@ -34,8 +34,8 @@ from grashof.problems.values.tasks.closed_curve import spline_length
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.tandem_task import LINKS
 
-Driven: TypeAlias = Cylinder | None  # that drives the linkage
-MIRRORED = 1e-9  # sizes: by which B may miss the mirror image of A
+Driven: TypeAlias = Cylinder | None  # the cylinder that drives the linkage
+MIRRORED = 1e-9  # sizes: allowed distance of B from the mirror image of A
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 

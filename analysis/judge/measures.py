@@ -111,7 +111,7 @@ class Values(Mapping[str, float]):
 
     @cached_property
     def coupler(self) -> CouplerMotion:
-        """Extremes of its direction and rate over the task motion."""
+        """Extremes of the direction and the rate of the coupler over the task motion."""
         return coupler_motion(self.linkage, self.problem.task, self.verdict)
 
     @cached_property
@@ -311,7 +311,7 @@ def _ratios(values: Values) -> dict[str, FloatArray]:
 
 
 def _distances(values: Values) -> dict[str, FloatArray]:
-    """Between points of the first loop, and of P from them, at every target."""
+    """Distances between points of the first loop, and of P from them, at every target."""
     state, ground = values.at_targets, values.linkage.mechanism.ground
     places = {name: getattr(state, name) for name in ("a", "b", "p")}
     places |= {name: np.asarray(getattr(values.linkage, name)) for name in ("o2", "o4") if name in ground}

@@ -1,4 +1,4 @@
-"""The limits that a judged linkage misses, and by how much."""
+"""The limits that a judged linkage misses, with each miss."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
 
 
 def lifted(angles: FloatArray, allowed: Limits) -> FloatArray:
-    """Angles of a motion moved by whole turns to be nearest to the middle of a range.
+    """Angles of a motion, shifted by whole turns to be nearest to the middle of a range.
 
     >>> np.degrees(lifted(np.radians([170.0, 200.0]), (-np.pi, -np.pi / 2))).round(6).tolist()
     [-190.0, -160.0]
@@ -67,7 +67,7 @@ def lifted(angles: FloatArray, allowed: Limits) -> FloatArray:
 
 
 def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:
-    """By how much a value is beyond its limits: in rad, as a share of the limit of a ratio, or in scales."""
+    """Excess of a value over its limits: in rad, as a share of the limit of a ratio, or in scales."""
     low, high = allowed
     if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
         return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf

@@ -12,12 +12,12 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements.limit_kinds import Limit
 from grashof.problems.values.requirements.quantities import Scope
 
-# Sizes, up to which a joint counts as inside a polygon, and as on a segment.
+# Distances, in sizes, up to which a joint counts as inside a polygon, and as on a segment.
 INSIDE, ON = 1e-9, 1e-6
 
 
 def distances(region: Region, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Distances of places (n,) from a region, zero inside and on its boundary; NaN where a place is.
+    """Distances of places (n,) from a region, zero inside and on its boundary; NaN for a place that is NaN.
 
     >>> triangle = Region(inside=[[0, 0], [4, 0], [0, 4]])
     >>> distances(triangle, np.array([1.0, 2.0, 5.0]), np.array([1.0, 2.0, 0.0])).tolist()

@@ -56,8 +56,8 @@ class Verdict:
     angle_error : ndarray, shape (N,), rad
         NaN where a target has no angle.
     square : float, length squared
-        The objective of least squares: the weighted sum of |dp|^2 + (angle_length * dangle)^2, and what the
-        weight of a wanted torque adds.
+        The objective of least squares: the weighted sum of |dp|^2 + (angle_length * dangle)^2, and the
+        share of a wanted torque by its weight.
     direction : int
         Sense of the driver, +1 counter-clockwise.
     grashof_class : GrashofClass
@@ -69,9 +69,9 @@ class Verdict:
     defects : tuple of Defect
         Empty for a design that meets all requirements.
     cylinder : Cylinder, optional
-        That drives it, where one does.
+        The cylinder that drives the linkage.
     effort : EffortSpec, optional
-        The effort with its struts and springs placed, where they are.
+        The effort with its placed struts and springs.
     output_error : ndarray, shape (N,), rad
         Of the output of a function at its pairs; empty for other tasks.
     structural_error_max, structural_error_rms, structural_error_at : float, rad

@@ -146,7 +146,7 @@ def _square(targets: Targets, task: Task) -> float:
 
 
 def _of_torque(linkage: Linkage, problem: Problem, torque: WantedTorque, verdict: Verdict) -> float:
-    """What the deviation from a wanted torque adds to the square; nothing where targets are not joined."""
+    """Share of the deviation from a wanted torque in the square; 0 where targets are not joined."""
     misses = torque_misses(linkage, problem, verdict) / torque.greatest
     per_target = np.nan_to_num(np.mean((torque.weight * problem.task.size * misses) ** 2))
     return float(len(problem.task) * per_target)

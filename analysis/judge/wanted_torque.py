@@ -1,4 +1,4 @@
-"""The drive torque of a judged linkage where another one is wanted."""
+"""The deviation of the drive torque of a judged linkage from a wanted one."""
 
 from __future__ import annotations
 
@@ -36,15 +36,16 @@ def torque_misses(linkage: Linkage, problem: Problem, verdict: Verdict) -> Float
     linkage : Linkage
         A single linkage.
     problem : Problem
-        With dynamics and a wanted torque.
+        A problem with dynamics and a wanted torque.
     verdict : Verdict
         Of `verify`: the driver angle at every target.
 
     Returns
     -------
     ndarray, shape (K,), N m
-        Positive where link 2 has to be driven, in its sense from the first target to the last, by more than
-        is wanted; NaN where no motion joins the targets or a slide travels beyond the rows of a load.
+        Positive where the drive torque, in the sense of link 2 from the first target to the last, is greater
+        than the wanted one; NaN where no motion joins the targets or a slide travels beyond the rows of a
+        load.
 
     Examples
     --------

@@ -226,7 +226,7 @@ class InvertedLoop(_DiagonalLoop):
         return GrashofClass.CRANK_SHAPER if self.linkage.r2 < self.linkage.r1 else GrashofClass.WHITWORTH
 
     def limits(self) -> FloatArray:
-        """Crank square to the rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""
+        """Crank perpendicular to rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""
         side = np.array([1.0, -1.0])
         r1, r2, offset = (x[..., None] for x in (self.linkage.r1, self.linkage.r2, self.linkage.offset))
         beside = side * r2 - offset

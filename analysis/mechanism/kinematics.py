@@ -306,10 +306,10 @@ def solve_kinematics(
 
 _WHY_DEAD = {
     (1, DyadKind.RRR): "coupler and output lie in one line",
-    (1, DyadKind.RRP): "the rod is square to the slide",
+    (1, DyadKind.RRP): "the rod is perpendicular to the slide",
     (1, DyadKind.RPR): "the block is at A",
     (2, DyadKind.RRR): "links 5 and 6 lie in one line",
-    (2, DyadKind.RRP): "link 5 is square to the slide",
+    (2, DyadKind.RRP): "link 5 is perpendicular to the slide",
 }
 
 

@@ -80,9 +80,9 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
 
     Notes
     -----
-    Extremes of mu are at the ends and where O2A lies along the ground line, or square to the slide, since the
-    diagonal A-O4, or the distance of A from the slide, is monotone between. Those of a second loop are where
-    the width of its gap has an extreme, sampled and refined.
+    Extremes of mu are at the ends and where O2A lies along the ground line, or perpendicular to the slide,
+    since the diagonal A-O4, or the distance of A from the slide, is monotone between. Those of a second loop
+    are where the width of its gap has an extreme, sampled and refined.
     """
     low = np.minimum(start, end) - linkage.theta1
     high = np.maximum(start, end) - linkage.theta1

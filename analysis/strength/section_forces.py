@@ -158,8 +158,8 @@ def section_forces(
     Notes
     -----
     Each link is a straight bar along the line of its joints. A load beside that line acts through a
-    rigid arm on the bar, square to it; beyond a joint the bar continues to the last load on it, such as
-    a horsehead or a counterweight. A load that lies further beside the line than beyond the joint acts
+    rigid arm on the bar, perpendicular to it; beyond a joint the bar continues to the last load on it, such
+    as a horsehead or a counterweight. A load that lies further beside the line than beyond the joint acts
     on an arm from the joint instead. That changes nothing between the joints.
 
     A body of mass m and inertia I about its centre is spread evenly over the stretch of the bar that

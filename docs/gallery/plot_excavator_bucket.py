@@ -2,13 +2,13 @@
 Bucket of an excavator
 ======================
 
-The cylinder of an excavator's arm turns a rocker, and a link turns the bucket. The driver knows the length of
-the cylinder alone: the bucket has to turn as that grows, from digging to holding its load.
+The cylinder of an excavator's arm turns a rocker, and a link turns the bucket. The operator controls only the
+length of the cylinder: the bucket has to turn with it, from digging to holding its load.
 """
 
 # %%
-# That is a function of a length: 300 mm of stroke (the input) give 150 deg of the bucket (the output), and
-# 62 deg at half way. Base, arm and first length of the cylinder are found together with the linkage.
+# That is a function of a length: 300 mm of stroke (the input) turn the bucket by 150 deg (the output), the
+# first half of it by 62 deg. Base, arm and first length of the cylinder are found together with the linkage.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -26,7 +26,7 @@ assert abs(best.values["cylinder_stroke"] - 300) < 1e-6
 
 # %%
 # The pairs are met exactly, but between them the bucket may lead or lag by some degrees
-# (``structural_error_max_deg``); nobody minds that on a bucket.
+# (``structural_error_max_deg``), which does not matter for a bucket.
 
 curves = function_curves(best.linkage, problem.task, best.verdict)
 figure, ax = plt.subplots()
@@ -35,7 +35,7 @@ ax.plot(problem.task.inputs, np.degrees(problem.task.outputs), "o")
 ax.set(xlabel="lengthening of the cylinder (mm)", ylabel="rotation of the bucket (deg)")
 
 # %%
-# The moment at the bucket over the force of the cylinder is the rate of the cylinder, the change of its
+# The moment on the bucket over the force of the cylinder is the rate of the cylinder, the change of its
 # length for a radian of the bucket; ``cylinder_rate`` keeps it above 45 mm.
 
 theta2 = np.linspace(best.verdict.theta2[0], best.verdict.theta2[-1], 181)

@@ -38,8 +38,8 @@ for ax, (kind, rank) in zip(axes, first["rank"].items(), strict=True):
 
 # %%
 # Inverted slider-cranks lead with 90 deg, and that deserves a remark: without an offset the block always
-# pushes square to its rod, so that this number says nothing of the friction in the block, nor of a rod that
-# is longer than the rest of the linkage. Compare kinds by size and by what their parts cost as well; the
+# pushes perpendicular to its rod, so that this number says nothing of the friction in the block, nor of a rod
+# that is longer than the rest of the linkage. Compare kinds by size and by what their parts cost as well; the
 # transmission angle compares designs of one kind.
 
 assert first.loc["inverted-slider-crank", "transmission_min_task_deg"] > 80

@@ -22,12 +22,12 @@ _FOREIGN = "has no design of grashof live in its fragment"
 
 @dataclass(frozen=True, slots=True)
 class SharedDesign:
-    """What a link states.
+    """The problem and the design of a link.
 
     Parameters
     ----------
     name : str
-        Of the problem, fit for files.
+        Name of the problem, valid as a file name.
     document : dict
         The problem file, as JSON.
     linkage : str
@@ -40,7 +40,7 @@ class SharedDesign:
 
 
 def design_link(shared: SharedDesign, page: str) -> str:
-    """The link, at the address of a page.
+    """The link of a problem and its design, at the address of a page.
 
     Examples
     --------
@@ -55,14 +55,14 @@ def design_link(shared: SharedDesign, page: str) -> str:
 
 
 def is_link(text: str) -> bool:
-    """Whether a text looks like such a link, or its fragment."""
+    """Whether a text looks like the link of a design, or its fragment."""
     return MARK in _fragment(text)
 
 
 def read_link(text: str) -> SharedDesign:
     """The problem and the design of a link, which a mail may have broken into lines.
 
-    `ProblemError` where it is damaged, not a link of a design, or larger than a megabyte.
+    `ProblemError` where it is damaged, not the link of a design, or larger than a megabyte.
     """
     found = re.search(rf"{MARK}([\w-]*)", _fragment(text), re.ASCII)
     if found is None:
@@ -79,7 +79,7 @@ def read_link(text: str) -> SharedDesign:
 
 
 def _fragment(text: str) -> str:
-    """What follows the #, without the breaks and quoting of mails."""
+    """The text after the #, without the line breaks and quoting of mails."""
     return re.sub(r"\s", "", unquote(text)).partition("#")[2]
 
 

@@ -126,14 +126,14 @@ class _PartsTable(tables.Table):
 
 
 def parts_from(given: Any) -> tuple[PartSpec, ...]:
-    """Parts as a list of designs states them; `ProblemError` has a line for each error."""
+    """Parts in a list of designs; `ProblemError` has a line for each error."""
     found = tables.stated(_PartsTable, {"parts": given})
     return tuple(part.value() for part in found.parts)
 
 
 @cache
 def usual_sizes(kind: str, length_unit: str) -> tuple[PartSize, ...]:
-    """The sizes that come with the program, lengths in the unit."""
+    """The sizes that come with the program, lengths in a unit."""
     file = resources.files("grashof.problems").joinpath(f"data/struts-{kind}.csv")
     rows = [line.split(",") for line in file.read_text(encoding="utf-8").splitlines()]
     return sizes_from(rows, file.name, kind, length_unit)
@@ -144,7 +144,7 @@ def sizes_from(
 ) -> tuple[PartSize, ...]:
     """The sizes of a table whose first line names its columns, with their units.
 
-    `ProblemError` for columns that are missing, unknown or without unit, and cells that are no numbers.
+    `ProblemError` for columns that are missing, unknown or without unit, and cells that are not numbers.
     """
     usual, columns = _columns(kind)
     head = [cell.casefold() for cell in lines[0]] if lines else []
@@ -161,7 +161,7 @@ def sizes_from(
             raise ProblemError(f"{name}: column {column} is {state}; {allowed}")
     if not 2 <= len(lines) <= _MOST_SIZES + 1:
         raise ProblemError(f"{name}: has {len(lines) - 1} rows; it must have from 1 to {_MOST_SIZES}")
-    metre = METRES.get(length_unit, 1.0)  # a unit that is unknown is refused elsewhere
+    metre = METRES.get(length_unit, 1.0)  # an unknown unit is refused elsewhere
     factors = [METRES.get(column.rpartition("_")[2], metre) / metre for column in head]
 
     def size(line: Sequence[str], where: str) -> PartSize:
@@ -174,7 +174,7 @@ def sizes_from(
     return tuple(checks.each_checked(lines[1:], name, size, ": row {}", 1))
 
 
-_KEYS = {"turn": "turn_deg"}  # of columns, whose endings are units
+_KEYS = {"turn": "turn_deg"}  # keys of columns, whose endings are units
 
 
 def _columns(kind: str) -> tuple[dict[str, str], dict[str, str]]:

@@ -214,7 +214,7 @@ def _design(design: dict[str, Any], document: dict[str, Any], path: Path) -> tup
 
 
 def _with_parts(dynamics: DynamicsSpec, design: dict[str, Any]) -> DynamicsSpec:
-    """The dynamics with the travel of a design, and the struts and springs that a list states of it."""
+    """The dynamics with the travel of a design, and its struts and springs from a list."""
     from grashof.problems.files.effort_schema import parts_from
 
     effort, given = dynamics.effort, design.get("parts")

@@ -42,7 +42,7 @@ def linkage_toml(spec: LinkageSpec) -> str:
 
 
 def mail_toml(spec: LinkageSpec) -> str:
-    """The same as `grashof show` prints it: of a design, without the path of its list."""
+    """The same as `grashof show` prints it; for a design without the path of its list."""
     return linkage_toml(spec if spec.problem is None else replace(spec, source=""))
 
 

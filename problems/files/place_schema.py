@@ -26,7 +26,7 @@ class BoxTable(tables.SpecTable):
     @field_validator("x", "y", mode="before", check_fields=False)
     @classmethod
     def _line(cls, given: Any) -> Any:
-        """A number alone is a side of no width."""
+        """A single number is a side of no width."""
         return [given, given] if tables.tag(given) == tables.NUMBER else given
 
     @classmethod

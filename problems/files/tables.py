@@ -139,7 +139,7 @@ def of_length(count: int, wanted: str) -> AfterValidator:
 
 
 def numbers(count: int) -> dict[str, Any]:
-    """The JSON Schema of a list of some numbers."""
+    """The JSON Schema of a list of `count` numbers."""
     return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}
 
 
@@ -294,7 +294,7 @@ def spec_table(
             optional = default is None and given is not Any
             given = (given | None if optional else given, ... if default is Parameter.empty else default)
         keys[name] = given
-    own = base is NestedTable or base.__name__.startswith("_")  # a base of several tables
+    own = base is NestedTable or base.__name__.startswith("_")  # a base class of several tables
     name = f"{spec.__name__.removesuffix('Spec')}Table" if own else base.__name__
     table = create_model(name, __base__=base, __doc__=doc, **keys)
     table.spec = spec

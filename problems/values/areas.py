@@ -1,7 +1,7 @@
 """Areas for parts of a linkage to avoid: polygons checked, and joined.
 
-Regions for joints are shapes here, too. The only module that gives polygons to shapely. It is imported only
-where there are areas.
+Regions for joints are shapes here, too. Only this module gives polygons to shapely; it is imported only where
+there are areas.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, counted, each_checked, finite_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 
-_STEPS = 400  # along a line, at least, at which its depth is measured
+_STEPS = 400  # least number of steps along a line at which its depth is measured
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
 
 
@@ -40,7 +40,7 @@ def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
 
 
 def depth_of_line(areas: Sequence[FloatArray], corners: FloatArray) -> float:
-    """How deep a closed line through corners (M, 2), or a single point, reaches into areas; 0 outside.
+    """Greatest depth of a closed line through corners (M, 2), or a single point, inside areas; 0 outside.
 
     >>> square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
     >>> depth_of_line([square], np.array([[1.0, 2.0]])), depth_of_line([square], square + [3.0, 0.0])

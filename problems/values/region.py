@@ -33,7 +33,7 @@ class Region(Box):
     Raises
     ------
     ProblemError
-        Both or neither of them, a polygon without area or one that crosses itself, a segment of no length.
+        Both or neither of them, a polygon without area or one that crosses itself, or a segment of no length.
 
     Examples
     --------
@@ -70,7 +70,7 @@ class Region(Box):
 
     @property
     def is_upright(self) -> bool:
-        """Whether it is a segment along an axis, which its box says already."""
+        """Whether it is a segment along an axis, which its box describes completely."""
         wide, tall = self.x[1] - self.x[0], self.y[1] - self.y[0]
         return self.on is not None and min(wide, tall) <= NARROWEST * max(wide, tall)
 
@@ -110,12 +110,12 @@ def place(**sides: Any) -> Box:
 
 
 def standing(box: Box | None) -> Box:
-    """A box for a pivot that is placed at once: of a region, one point in it."""
+    """The box for a pivot that is placed at once; for a region, a point in it."""
     return box.point if isinstance(box, Region) else box or ANYWHERE
 
 
 def regions(places: dict[str, Any]) -> dict[str, Region]:
-    """Those of some values that are regions, by name."""
+    """The values that are regions, by name."""
     return {name: each for name, each in places.items() if isinstance(each, Region)}
 
 

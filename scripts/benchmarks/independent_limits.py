@@ -44,7 +44,7 @@ class Aim:
     turned: bool  # the targets have angles
     timed: bool  # the driver rotations are prescribed
     over_turn: bool  # the transmission angle counts over the full turn
-    potential: Any = None  # whose slope is wanted, see `wanted_torque.Potential`
+    potential: Any = None  # its slope is the drive torque, see `wanted_torque.Potential`
 
     @classmethod
     def of(cls, problem: Problem, potential: Any = None) -> "Aim":
@@ -52,14 +52,14 @@ class Aim:
         task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
         set_angles = (wanted.ground_angle_deg, wanted.theta2_start_deg) != (None, None)
         if wanted.keep_out or not wanted.order or not wanted.same_branch or set_angles:
-            raise ValueError("areas, other branches, any order and prescribed angles are not known here")
+            raise ValueError("areas, other branches, any order and prescribed angles are not supported here")
         placed, size, angles = isinstance(task, (MotionTask, PathTask)), task.size, task.angles
         places = task.positions @ np.array([1, 1j]) if placed else np.zeros(len(task), dtype=complex)
         middle = complex(places.mean())
         if isinstance(task, FunctionTask) and task.link == "coupler":
             angles = task.outputs  # as a body that turns with the coupler, wherever it is
         elif not placed or not (task.is_whole or task.only_points):
-            raise ValueError("poses with free parts and functions of link 4 are not known here")
+            raise ValueError("poses with free parts and functions of link 4 are not supported here")
         return cls(
             size, middle, (places - middle) / size, angles, np.sqrt(task.weights),
             task.angle_length / size, task.driver_turns, task.closed, wanted, placed,
@@ -181,7 +181,7 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
 
 
 def beyond(value: FloatArray, aim: Aim, limits: tuple[float, float], middle: float = 0.0) -> list[FloatArray]:
-    """Excess over finite limits in lengths of the problem, of values in sizes from the middle."""
+    """Excess of values in sizes from the middle over finite limits in lengths of the problem."""
     pairs = zip((-1, 1), limits, strict=True)
     return [
         side * (value - (limit - middle) / aim.size) + INSIDE for side, limit in pairs if np.isfinite(limit)
@@ -233,7 +233,7 @@ def sides(region: Region) -> list[tuple[complex, float]]:
     along = np.roll(corners, -1) - corners
     turns = np.sign((along.conj() * np.roll(along, -1)).imag)  # 1 where the corners go counter-clockwise
     if np.ptp(turns) > 1:
-        raise ValueError("concave regions are not known here")
+        raise ValueError("concave regions are not supported here")
     normals = 1j * (turns.sum() or 1) * along
     least = (corners * normals.conj()).real / np.abs(normals) - BESIDE * np.abs(along) * (
         region.on is not None

@@ -118,7 +118,7 @@ def _toggle(free: Candidate, _: float, _rng: np.random.Generator) -> dict[str, A
 
 
 def _place(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
-    """Places of A at the first target that begin beyond the best one."""
+    """Places of A at the first target that begin beyond its best place."""
     least = float(_joints(free)[1][0].real) + rng.uniform(0.02, 0.1)
     return {"at": (TargetLimits(targets=[1], a=Box(x=(least, np.inf))),)}
 
@@ -129,7 +129,7 @@ def _polygon_o2(free: Candidate, size: float, rng: np.random.Generator) -> dict[
 
 
 def _polygon_a(free: Candidate, size: float, rng: np.random.Generator) -> dict[str, Any]:
-    """A triangle for A at every target, from which the best circle of A juts out."""
+    """A triangle for A at every target, beyond which the best circle of A extends."""
     return {"a": _triangle(_joints(free)[1], size, rng)}
 
 
@@ -201,7 +201,7 @@ def _joints(free: Candidate) -> tuple[complex, ComplexArray, ComplexArray]:
 
 
 def _triangle(places: complex | ComplexArray, size: float, rng: np.random.Generator) -> Region:
-    """A triangle wide enough for the places, which some of them are outside."""
+    """A triangle wide enough for the places, some of which are outside."""
     middle, ahead = np.mean(places), _direction(rng)
     radius = float(np.abs(places - middle).max())
     wide = 0.9 * size + 2 * radius

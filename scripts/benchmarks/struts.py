@@ -1,8 +1,8 @@
-"""Struts: the greatest deviation from the wanted effort, and that of ten times as long an independent search.
+"""Struts: the greatest deviation from the wanted effort, and that of an independent search ten times as long.
 
 The independent search knows nothing of `grashof.synth`: it follows the four-bar by the elbow formula, takes
 the effort from differences of potential energy along the path of the hand, and improves random places and
-sizes by differential evolution. The judge has the last word on both. A case fails where the deviation of
+sizes by differential evolution. Both values are the judge's. A case fails where the deviation of
 `place_parts` exceeds 1.05 times that of the other; where limits are kept, margins are compared.
 """
 
@@ -33,7 +33,7 @@ STEPS, MEMBERS = 120, 300
 
 
 def bonnet() -> Problem:
-    """That of the gallery, with P in its centre of mass, and two struts."""
+    """The bonnet of the gallery, with P in its centre of mass, and two struts."""
     around = Box((-60, 350), (-260, -60))
     plate = Box((-520, -170), (-60, 30))
     part = PartSpec(
@@ -71,7 +71,7 @@ class Moves:
     origin: ComplexArray  # of the body
     axis: ComplexArray
     angle: FloatArray  # deg, from the start of the travel, halfway between two places
-    hand: FloatArray  # ways of the hand, (N - 1,)
+    hand: FloatArray  # paths of the hand, (N - 1,)
     weight: FloatArray  # gain of potential energy, N mm
 
 
@@ -125,7 +125,7 @@ def deviations(moved: Moves, spec: EffortSpec, x: FloatArray, rows: IntArray) ->
 def excesses(
     spec: EffortSpec, angle: FloatArray, effort: FloatArray, friction: FloatArray
 ) -> Iterator[FloatArray]:
-    """What is wanted of the effort, one after the other."""
+    """Excess over the demands on the effort, one after the other."""
     if spec.wanted is not None:
         inside = angle <= spec.wanted[-1][0]
         yield np.abs(effort - np.interp(angle, *np.array(spec.wanted).T))[:, inside]
@@ -139,7 +139,7 @@ def excesses(
 def evolved(
     moved: Moves, spec: EffortSpec, seconds: float, rng: np.random.Generator
 ) -> tuple[FloatArray, int]:
-    """The best candidate of differential evolution, begun anew where it has settled, within a time."""
+    """The best candidate of differential evolution within a time, restarted whenever it has converged."""
     begun, count = process_time(), len(spec.parts[0].sizes)
     best, least = (np.zeros(4), 0), np.inf
     while process_time() - begun < seconds:

@@ -1,8 +1,8 @@
-"""Wanted torques against searches of their own with ten times the effort, which share nothing with `synth`.
+"""Wanted torques against independent searches with ten times the time, which share nothing with `synth`.
 
 Three poses are met by circles through three places of each joint, and the joints move by a simplex search;
-points and torques together are fitted by `independent_search.py`. A torque is there the slope of a potential.
-The judge has the last word on both.
+points and torques together are fitted by `independent_search.py`. Their torque is the slope of a potential.
+Both values are the judge's.
 """
 
 from collections.abc import Callable, Iterator
@@ -33,8 +33,8 @@ from grashof.problems import (
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.dynamics.load_specs import LoadSpec, Place, SpringSpec
 
-EFFORT = 10  # times the time of the product
-SLOW = 1e-3  # rpm: no inertia to speak of
+EFFORT = 10  # multiple of the time of `synthesize`
+SLOW = 1e-3  # rpm: negligible inertia
 ROWS, POINTS, NOISE, WEIGHT = 6, 8, 0.03, 0.1
 DRAWS, BEST, STEPS = 20_000, 12, 800
 SIMPLEX: Any = {"maxiter": STEPS, "maxfev": STEPS, "xatol": 1e-9, "fatol": 1e-12}
@@ -81,10 +81,10 @@ class Potential:
 
     @classmethod
     def of(cls, problem: Problem) -> "Potential":
-        """That of a problem in metres, whose forces and springs act on the coupler."""
+        """The potential of a problem in metres, whose forces and springs act on the coupler."""
         spec, torque = problem.dynamics, problem.torque
         if spec is None or torque is None or torque.over != "share" or problem.length_unit != "m":
-            raise ValueError("a wanted torque over shares, in metres, is known here")
+            raise ValueError("only a wanted torque over shares, in metres, is supported here")
         placed = problem.task.positions @ np.array([1, 1j])
         return cls(
             size=problem.task.size,
@@ -145,7 +145,7 @@ class Circles:
 
     @classmethod
     def of(cls, problem: Problem) -> "Circles":
-        """Those of a problem."""
+        """The circles of a problem."""
         task, potential = problem.task, Potential.of(problem)
         points = (task.positions @ np.array([1, 1j]) - potential.middle) / potential.size
         return cls(problem, potential, points, np.exp(1j * task.angles))
@@ -204,11 +204,11 @@ class Circles:
         return np.array([self.points[0].real, self.points[0].imag] * 2)
 
     def deviation(self, x: FloatArray, sense: int) -> float:
-        """That of one of them, large where limits are missed."""
+        """The deviation of a single linkage, large where limits are missed."""
         return float(min(self.deviations(x[None], sense)[0], MISSED))
 
     def judged(self, x: FloatArray) -> float:
-        """The deviation of one of them in N m by the judge, infinite where that rejects it."""
+        """The deviation of a single linkage by the judge, N m; infinite where it is rejected."""
         try:
             linkage = self.linkage(x)
         except ProblemError:
@@ -218,7 +218,7 @@ class Circles:
         return Values(linkage, verdict, problem)["torque_deviation"] if verdict.ok else np.inf
 
     def linkage(self, x: FloatArray) -> FourBar:
-        """One of them in metres."""
+        """A single linkage, in metres."""
         a, b = (self.at_poses(x[None, k] + 1j * x[None, k + 1]) for k in (0, 2))
         o2, o4 = centre(a)[0], centre(b)[0]
         along = (b - a)[0, 0]
@@ -266,7 +266,7 @@ def by_points(problem: Problem, seconds: float) -> float:
 
 
 def fitted(rng: np.random.Generator) -> Problem:
-    """Points that no linkage need pass, and a torque that none need have, fitted together."""
+    """Random points and a random torque, fitted together."""
     stated = loaded(rng, POINTS)
     off = NOISE * stated.task.size * rng.normal(size=(POINTS, 2))
     torque = WantedTorque(() if stated.torque is None else stated.torque.wanted, "share", WEIGHT)
@@ -295,7 +295,7 @@ def compared(
 
 
 def poses(count: int, seed: int) -> Iterator[str]:
-    """Three poses met, and a torque that no linkage need have."""
+    """Three poses met, and a random torque."""
     yield from compared(count, seed, lambda rng: loaded(rng, 3), "torque_deviation", by_circles)
 
 

@@ -153,7 +153,7 @@ def linkages(
 def schema(
     file: Annotated[FileKind, typer.Argument(help="Kind of file.")] = FileKind.PROBLEM,
 ) -> None:
-    """Print a JSON Schema of problem or linkage files, by which editors complete and check keys."""
+    """Print a JSON Schema of problem or linkage files, with which editors complete and check keys."""
     from grashof.problems.schema.json_schema import json_schema
 
     say(json.dumps(json_schema(file), indent=1))

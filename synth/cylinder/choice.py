@@ -28,7 +28,7 @@ def best_cylinder(
 ) -> Cylinder | None:
     """The cylinder of the greatest worst lever angle within limits; None where none was found.
 
-    Of a single linkage whose theta2, theta3 and theta4 (M,) are samples of the task motion. A limit of the
+    For a single linkage whose theta2, theta3 and theta4 (M,) are samples of the task motion. A limit of the
     force, N, needs the power (M,) of a driver of link 2 at 1 rad/s, N length; limits of the rate are lengths
     for a radian of link 4. Without `one_branch` link 2 passes a dead position, so that it cannot be driven.
     """

@@ -42,7 +42,7 @@ class Performance(NamedTuple):
     ratio: FloatArray
     force: FloatArray
     slow: FloatArray  # least change of the length for a radian of link 4; 1 without limits of the rate
-    quick: FloatArray  # the greatest
+    quick: FloatArray  # greatest change
 
 
 def planes_of(

@@ -52,7 +52,7 @@ def by_quadratic(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
 
 
 def by_linear(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
-    """The same by linear programmes, which may begin, and end, outside the limits."""
+    """The same by linear programmes, which may begin and end outside the limits."""
     scale = _Scale.of(plane, room)
 
     def rows(x: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -53,7 +53,7 @@ def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylind
 
 
 def _rate(problem: Problem, linkage: Linkage) -> Limits:
-    """Limits of the cylinder's rate, which linkages without a link 4 that turns do not have."""
+    """Limits of the cylinder's rate; linkages whose link 4 slides have none."""
     limits = problem.requirements.cylinder_rate
     has = linkage.mechanism.word in LIMITS["cylinder_rate"].quantity.kinds
     return (0.0, np.inf) if limits is None or not has else limits

@@ -14,11 +14,11 @@ from grashof.synth.effort.placing import placed
 from grashof.synth.theory.stopping import overdue
 
 _OF_PARTS = "effort.parts"
-_PLACED = {1: 24, 2: 6}  # designs of a list that get parts, by the number of these
+_PLACED = {1: 24, 2: 6}  # number of designs of a list that get parts, by the number of parts
 
 
 def with_best_parts(designs: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """The designs of a list, the first of them, in time, with the best struts and springs."""
+    """The designs of a list; the first of them have the best struts and springs, as far as time allows."""
     dynamics = designs[0].problem.dynamics if designs else None
     if dynamics is None or dynamics.effort is None:
         return tuple(designs)
@@ -27,7 +27,7 @@ def with_best_parts(designs: Sequence[Candidate]) -> tuple[Candidate, ...]:
 
 
 def with_parts(candidate: Candidate, known: Sequence[PartSpec] = ()) -> Candidate:
-    """A design with struts and springs: those that are known, with their defects, or the best that are found.
+    """A design with struts and springs: the known ones, with their defects, or the best that are found.
 
     Parts that the search found and the judge rejects are left out.
     """
@@ -55,7 +55,7 @@ def place_parts(spec: LinkageSpec) -> LinkageSpec:
     Parameters
     ----------
     spec : LinkageSpec
-        Its effort may leave sizes and places of parts open.
+        Sizes and places of the parts of its effort may be open.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def place_parts(spec: LinkageSpec) -> LinkageSpec:
     Raises
     ------
     ProblemError
-        No size of the tables lasts the travel between places in the areas.
+        No size has enough stroke for the travel between places in the areas, or the travel is not known.
     """
     case = effort_of_file(spec)
     if case is None or spec.dynamics is None or case.spec.is_placed:

@@ -56,7 +56,7 @@ def judged_linkage(
     most_error: float = np.inf,
     cylinder: Cylinder | None = None,
 ) -> Candidate:
-    """A linkage with the verdict on it, as `judged`; driven by a known cylinder, or else by the best."""
+    """A linkage with the verdict on it, as by `judged`; driven by a known cylinder, or else by the best."""
     verdict = driven_verdict(scaled, linkage, most_error, cylinder)
     candidate = _valued(scaled, Candidate(linkage, verdict, scaled.problem, start, iterations))
     if verdict.ok:

@@ -1,4 +1,4 @@
-"""A linkage at samples of its travel, and the effort that parts of some sizes at some places leave there."""
+"""A linkage at samples of its travel, and its effort there with parts of given sizes at given places."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from grashof.problems import Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, turned_from
 from grashof.problems.values.dynamics.struts import BODY, EffortPlace, PartSpec
 
-_ABOUT_STROKES = 49  # samples over the travel, on which strokes are kept
+_ABOUT_STROKES = 49  # samples of the travel at which strokes are checked
 INSET = 1e-5  # share of a stroke by which it is tightened, so that the judge finds it kept
-_SAMPLES, _LEAST = 41, 7  # over what is wanted of the entire travel, and of any part of it
+_SAMPLES, _LEAST = 41, 7  # samples of a demand over the entire travel, and least number over a part of it
 
 
 class Frame(NamedTuple):
@@ -49,17 +49,17 @@ class Area(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """A part with its sizes as arrays (R,), and its areas; of torsion springs the angle of the joint (I,)."""
+    """A part: its sizes as arrays (R,), and its areas, or the angle (I,) of the joint of a torsion spring."""
 
     spec: PartSpec
     warmth: FloatArray  # (T,)
-    force: FloatArray  # (R,): of all side by side, at the greatest length; per deg of a torsion spring
-    slope: FloatArray  # (R,): force more for a unit of length less
+    force: FloatArray  # (R,): of all side by side, at the greatest length; of a torsion spring for a degree
+    slope: FloatArray  # (R,): increase of the force for a unit of length less
     longest: FloatArray
     shortest: FloatArray
     friction: FloatArray
     ends: tuple[Area, ...] = ()
-    angle: FloatArray | None = None  # deg, from the middle of its free angles
+    angle: FloatArray | None = None  # deg, from the middle of the range of free angles
     turn: FloatArray | None = None
 
     @property
@@ -69,7 +69,7 @@ class Part:
 
 
 class Found(NamedTuple):
-    """Of K candidates: excess (K, M) over what is wanted, N, and margins (K, P, 2, S) of strokes, shares."""
+    """Excess (K, M) of candidates over limits of the effort, N; margins (K, P, 2, S) of strokes, shares."""
 
     excess: FloatArray
     margins: FloatArray
@@ -77,7 +77,7 @@ class Found(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Aim:
-    """What is wanted at I samples: limits of the effort, N, and how it follows from the power of parts."""
+    """Limits of the effort at I samples, N, and its relation to the power of parts."""
 
     frames: dict[int, Frame]
     parts: tuple[Part, ...]
@@ -86,8 +86,8 @@ class Aim:
     least: FloatArray
     most: FloatArray
     friction: FloatArray  # (I,): of the joints
-    times: FloatArray  # (I,): number of times that friction is added to limits
-    strokes: int  # samples, the first ones, that are spread over the travel for strokes
+    times: FloatArray  # (I,): multiple of the friction that is added to limits
+    strokes: int  # number of the first samples, spread over the travel for strokes
     scale: float  # N
 
     @classmethod
@@ -154,7 +154,7 @@ class Aim:
         return replace(self, frames=frames, parts=parts, strokes=strokes, **arrays)
 
     def lengths(self, part: int, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Lengths of a part and their rates, (K, I), of unknowns (K, n); of torsion springs turns, deg."""
+        """Lengths of a part and their rates, (K, I), for unknowns (K, n); of torsion springs turns, deg."""
         one = self.parts[part]
         first = sum(each.unknowns for each in self.parts[:part])
         if one.angle is not None and one.turn is not None:
@@ -179,7 +179,7 @@ class Aim:
         return self.of_lengths(known, rows)
 
     def of_lengths(self, known: Sequence[tuple[FloatArray, FloatArray]], rows: IntArray) -> Found:
-        """The same of parts whose lengths and rates are known."""
+        """The same for known lengths and rates of parts."""
         count = len(rows)
         temperatures = {len(part.warmth) for part in self.parts} or {1}
         gained = np.zeros((count, max(temperatures), len(self.without)))
@@ -219,7 +219,7 @@ def _between_samples(values: FloatArray) -> FloatArray:
 
 
 def _samples(case: EffortCase) -> tuple[FloatArray, tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
-    """Places of all that is wanted and of strokes; limits, times of friction, whether of opening."""
+    """Places for strokes and demands; their limits, multiples of friction, and flags `opening`."""
     travel, parts = case.travel, []
     share = (1 - np.cos(np.linspace(0, np.pi, _ABOUT_STROKES))) / 2
     everywhere = travel.start + (travel.end - travel.start) * share

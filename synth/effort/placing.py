@@ -1,4 +1,4 @@
-"""The parts of an effort, placed."""
+"""Parts of an effort: their sizes and places."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grashof.synth.effort.search import best_by_search
 
 
 def placed(case: EffortCase, seed: int = 0) -> EffortSpec | None:
-    """The effort with the best size of each part at the best places; None where no stroke lasts the travel.
+    """The effort with the best size of each part at the best places; None without enough stroke.
 
     Parameters
     ----------
@@ -25,8 +25,8 @@ def placed(case: EffortCase, seed: int = 0) -> EffortSpec | None:
     -------
     EffortSpec or None
         The parts have a single size each, and points in place of areas. The greatest excess of the effort
-        over what is wanted is the least found: of several thousand random places and sizes the best are
-        closed in on, then improved by linear programmes.
+        over its limits is the least found: the best of several thousand random places and sizes are refined
+        by random steps, then by linear programmes. None where no size has enough stroke for the travel.
     """
     spec = case.spec
     if spec.is_placed:

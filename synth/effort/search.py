@@ -10,19 +10,19 @@ from grashof.synth.theory import minimax
 from grashof.synth.theory.stopping import overdue
 
 _DRAWN, _PARENTS, _CHILDREN, _ROUNDS = 3000, 48, 24, 32  # of one part; twice and more of two
-_SIZES = 4  # tried at first for each place
-_LIKE = 0.05  # share of a stroke by which sizes are overstepped alike
+_SIZES = 4  # sizes tried at first for each place
+_LIKE = 0.05  # share of a stroke: sizes whose excess differs by less count as equal
 _FIRST, _NARROWER = 0.3, 0.82  # share of the areas that a step spans, and its factor after each round
-_PENALTY = 10.0  # of a stroke that is overstepped by all of it, in scales of the effort
+_PENALTY = 10.0  # of an excess by a full stroke, in scales of the effort
 _COARSE = 3  # steps between samples that suffice to compare
 _FINISHED, _BESIDE = 3, 2  # candidates continued by linear programmes, with sizes tried again after each
-_MOST, _TRIED = 40, 5  # linear programmes in a row, and those that show which size is better
+_MOST, _TRIED = 40, 5  # linear programmes in a row, and their number for comparing sizes
 _BLOCK = 2000
-_GAIN = 1e-6  # share of the scale that is worth another programme
+_GAIN = 1e-6  # share of the scale: least gain that justifies another programme
 
 
 def best_by_search(aim: Aim, seed: int) -> tuple[FloatArray, IntArray] | None:
-    """Unknowns (n,) and sizes (P,) of the least greatest excess; None where no strokes last the travel."""
+    """Unknowns (n,) and sizes (P,) of the least greatest excess; None without enough stroke."""
     rng = np.random.default_rng(seed)
     coarse = aim.thinned(_COARSE)
     x, rows = _drawn(coarse, rng)
@@ -43,7 +43,7 @@ def best_by_search(aim: Aim, seed: int) -> tuple[FloatArray, IntArray] | None:
 
 
 def _drawn(aim: Aim, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
-    """Random places, and for each of the parts sizes whose strokes they suit best, with any force."""
+    """Random places, and for each part sizes whose strokes suit them best, with any force."""
     x = np.repeat(rng.random((_DRAWN * len(aim.parts), aim.unknowns)), _SIZES, axis=0)
     rows = np.empty((len(x), len(aim.parts)), dtype=np.intp)
     for number, part in enumerate(aim.parts):
@@ -70,7 +70,7 @@ def _scores(aim: Aim, x: FloatArray, rows: IntArray) -> FloatArray:
 def _closed_in(
     aim: Aim, x: FloatArray, rows: IntArray, score: FloatArray, rng: np.random.Generator
 ) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Ever smaller random steps from each of some candidates, some with another size; best first."""
+    """Ever smaller random steps from each candidate, some with another size; best first."""
     step, parents, counts = _FIRST, np.arange(len(x)), [len(part.force) for part in aim.parts]
     for _ in range(_ROUNDS):
         shape = (len(x), _CHILDREN, x.shape[1])
@@ -94,7 +94,7 @@ def _closed_in(
 
 
 def _apart(x: FloatArray, rows: IntArray, most: int, least: float = 0.05) -> list[int]:
-    """At most `most` candidates, each of other sizes than every better one, or some way from it."""
+    """At most `most` candidates, each with other sizes than every better one, or far enough from it."""
     kept: list[int] = []
     for k in range(len(x)):
         near = (np.abs(x[kept] - x[k]).max(axis=1, initial=0.0) < least) & (rows[kept] == rows[k]).all(axis=1)
@@ -106,7 +106,7 @@ def _apart(x: FloatArray, rows: IntArray, most: int, least: float = 0.05) -> lis
 
 
 def _finished(aim: Aim, x: FloatArray, rows: IntArray, most: int) -> tuple[FloatArray, IntArray]:
-    """A candidate at its least greatest excess, also with the other sizes that do best at its places."""
+    """A candidate at its least greatest excess, also with the other sizes that suit its places best."""
     best = _polished(aim, x, rows)
     score = float(_scores(aim, best[None], rows[None])[0])
     for _ in range(most):
@@ -125,7 +125,7 @@ def _finished(aim: Aim, x: FloatArray, rows: IntArray, most: int) -> tuple[Float
 
 
 def _best_sizes(aim: Aim, x: FloatArray, rows: IntArray, count: int) -> list[IntArray]:
-    """The sizes of one part each that do best at given places, strokes overstepped a little."""
+    """The best combinations at given places with one size changed; strokes may be exceeded a little."""
     found = []
     for number, part in enumerate(aim.parts):
         every = np.tile(rows, (len(part.force), 1))
@@ -140,7 +140,7 @@ def _best_sizes(aim: Aim, x: FloatArray, rows: IntArray, count: int) -> list[Int
 
 
 def _polished(aim: Aim, x: FloatArray, rows: IntArray, rounds: int = _MOST) -> FloatArray:
-    """Places at the least greatest excess of given sizes."""
+    """Places of least greatest excess for given sizes."""
 
     def values(z: FloatArray) -> tuple[FloatArray, FloatArray]:
         found = aim.at(z, np.broadcast_to(rows, (len(z), len(rows))))

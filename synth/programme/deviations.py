@@ -1,4 +1,4 @@
-"""Deviations from a wanted torque in the programme: bounded, in the cost, and as part of the squares."""
+"""Deviations from a wanted torque in the programme: bounds, terms of the cost, and part of the squares."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from grashof.synth.programme.unknowns import FAR, Unknowns
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.wanted_torque import rms
 
-KEPT = 1 - 1e-7  # share of a limit that the programme uses: the rest is rounding
-_TINY = 1e-12  # beside a mean square under a root
+KEPT = 1 - 1e-7  # share of a limit that the programme uses; the rest is for rounding
+_TINY = 1e-12  # added to a mean square under a root
 
 
 def driver_ends(form: Form, x: Unknowns) -> tuple[ca.SX, ca.SX, ca.SX]:
@@ -50,7 +50,7 @@ def symbolic_misses(form: Form, x: Unknowns, places: Positions) -> ca.SX:
 
 
 def squared_deviation(form: Form, x: Unknowns, places: Positions) -> ca.SX:
-    """What the weight of a wanted torque adds to the squares, sizes squared."""
+    """Share of a wanted torque in the squares by its weight, sizes squared."""
     if form.torque is None or not form.torque.weight:
         return ca.SX(0)
     square: ca.SX = ca.sumsqr(form.torque.counted(form.targets) * symbolic_misses(form, x, places))
@@ -60,9 +60,9 @@ def squared_deviation(form: Form, x: Unknowns, places: Positions) -> ca.SX:
 def cost_of_deviations(
     build: Builder, form: Form, x: Unknowns, places: Positions, weights: Mapping[str, ca.SX]
 ) -> ca.SX:
-    """The deviations that are goals, by their weights, in units of the start's; those limited are bounded.
+    """The deviations that are goals, weighted, in units of the start's; limited ones are bounded.
 
-    Where it is the only goal, the root mean square counts by its square, which is smooth where it vanishes.
+    A root mean square that is the only goal counts by its square, which is smooth where it vanishes.
     """
     cost = ca.SX(0)
     if not form.deviations:

@@ -19,7 +19,7 @@ ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
 
 
 def square(form: Form, x: Unknowns, places: Positions, targets: Targets) -> ca.SX:
-    """Weighted sum of squared distances and turns from the targets, and what a wanted torque adds."""
+    """Weighted sum of squared distances and turns from the targets, and of torque deviations."""
     cost = ca.SX(0)
     for k in range(form.targets):
         if form.positions[k]:
@@ -30,7 +30,7 @@ def square(form: Form, x: Unknowns, places: Positions, targets: Targets) -> ca.S
 
 
 def bound_error(build: Builder, form: Form, x: Unknowns, places: Positions, targets: Targets) -> None:
-    """The sum of the squares, or each target's, is bounded, as shares of their bounds."""
+    """Bound the sum of the squares, or each target's square, as a share of its bound."""
     if form.most_error:
         most = build.parameter(lambda _, start: min(start.terms.most_error, FAR) ** 2 * form.targets)
         build.row(1 - square(form, x, places, targets) / most)

@@ -75,7 +75,7 @@ def is_convex(region: Region) -> bool:
 
 @lru_cache(maxsize=64)
 def _beyond(region: Region) -> shapely.Geometry:
-    """What a region leaves of the box around it, which is enlarged."""
+    """The enlarged box around a region, less the region."""
     (left, right), (low, high) = region.x, region.y
     room = max(right - left, high - low)
     around = shapely.box(left - room, low - room, right + room, high + room)
@@ -85,7 +85,7 @@ def _beyond(region: Region) -> shapely.Geometry:
 
 
 def _at(name: str, scaled: ScaledProblem, start: Start) -> ComplexArray:
-    """Places of a joint at a start: of a moving one at the targets in the order of visit."""
+    """Places of a joint at a start; for a moving one at the targets in the order of visit."""
     joint, _, on_body = name.partition("_")
     if on_body:
         first = start.carrying[start.visit.index(0)] + start.body_angle

@@ -79,7 +79,7 @@ class SecondLoop:
 
     @classmethod
     def of(cls, linkage: Any, scale: Scale, turned: FloatArray) -> SecondLoop:
-        """That of a six-bar, in a frame."""
+        """The second loop of a six-bar, in a frame."""
         row, size = linkage.mechanism, scale.scale
         c, d, arm = (complex(*getattr(linkage, name)) for name in ("c", "d", "coupler_point"))
         return cls(

@@ -201,7 +201,7 @@ class DrivenLinkage:
     cylinder: Cylinder
 
 
-# A linkage is a design already: nothing is left to solve.
+# A linkage is already a design, with nothing left to solve.
 Proposal: TypeAlias = Start | Linkage | DrivenLinkage
 
 

@@ -52,8 +52,8 @@ class Form:
     torque: WantedCurve | None  # wanted, where the deviation from it counts
     closed: bool  # the task motion is a full turn
     keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
-    # Fields of places that are regions, with the half-planes of each; none for a segment. Bounds suffice for
-    # segments along an axis.
+    # Fields with regions, and the number of half-planes of each, 0 for a segment; segments along an axis need
+    # only bounds.
     regions: tuple[tuple[str, int], ...]
     stay: bool  # the distance from the start is the objective
     elastic: bool  # requirements may be missed; the amount is the objective

@@ -19,7 +19,7 @@ from grashof.synth.quantities.screening import GROUPS, Screened, depth_in, insid
 from grashof.synth.quantities.wanted_torque import DEVIATIONS
 
 # Driver angles, the targets' ends among them, and places along a link or a side of the body: of all linkages,
-# and of those that seem to be clear. Narrow areas pass between few samples.
+# and of those that seem to be clear. A narrow area may lie between samples.
 _COARSE = 13, np.linspace(0, 1, 6)[1:-1]
 _FINE = 61, np.linspace(0, 1, 13)[1:-1]
 _ROWS = 4000  # linkages at a time
@@ -74,7 +74,7 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 
 def _depth(scaled: ScaledProblem, linkages: Screened, samples: int, along: FloatArray) -> FloatArray:
-    """The same over so many driver angles, at these shares of links and of the sides of the body."""
+    """The same over a number of driver angles, at these shares of links and of the sides of the body."""
     wanted = scaled.wanted
     kind = scaled.kind.linkage.mechanism
     names = [name for name in points_kept_out(wanted) if name in kind.moving]

@@ -27,7 +27,7 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
 def _provers(
     scaled: ScaledProblem,
 ) -> Iterator[Callable[[ScaledProblem, Proving, float | None], Bounds | None]]:
-    """Those of a kind of task; none is loaded for others."""
+    """The provers of a kind of task; those of other kinds are not loaded."""
     if not scaled.one_loop:
         return
     if scaled.problem.task.at_limits:

@@ -28,7 +28,7 @@ MOST_PEAKS = 4  # that are reported at once
 
 
 # Quantities bounded over the task motion, by their keys, in `Problem.scale`: the magnitude of scalars and
-# vectors, the greatest of several. Of quantities with limits on both sides their distance from the middle.
+# vectors, the greatest of several. Of quantities with limits on both sides, the distance from the middle.
 Along: TypeAlias = Callable[[Instant, Loading | None, Any], list[Any]]
 ALONG: dict[str, Along] = {
     "mechanical_advantage": lambda at, *_: [at.rates.speed4],
@@ -63,7 +63,7 @@ def value_of(key: str, peak: Any) -> Any:
 
 
 def middle_of(wanted: Requirements, key: str) -> float:
-    """The middle between the limits of a quantity that is limited on both sides."""
+    """The middle of the limits of a quantity that is limited on both sides."""
     return float(np.mean(_sides(wanted, key))) if key in BOTH_SIDES else 0.0
 
 

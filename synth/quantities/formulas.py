@@ -73,7 +73,7 @@ def _place(name: str, dyad: int | None) -> tuple[Part, ...]:
 
 
 def _apart(*pairs: str) -> tuple[Part, ...]:
-    """Distances of two points at the targets."""
+    """Distances between two points at the targets."""
 
     def square(pair: str, d: View) -> Any:
         one, other = pair.split("-")

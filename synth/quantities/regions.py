@@ -1,4 +1,4 @@
-"""Regions for joints in the search: how far places lie outside, the nearest ones inside, half-planes."""
+"""Regions for joints in the search: distances outside, nearest places inside, half-planes."""
 
 from __future__ import annotations
 

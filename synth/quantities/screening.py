@@ -146,7 +146,7 @@ def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[t
         if part.dyad == dyad:
             missed[name] = missed.get(name, 0.0) + _overstep(view, name, part, wanted)
     for name, region, x, y in pairs_of(wanted, view.kind.formulas):
-        if x.dyad == dyad:  # in place of the box around it
+        if x.dyad == dyad:  # instead of the box around the region
             amount = outside(region, x.of(view), y.of(view))
             missed[name] = np.where(amount > ROUNDING, amount, 0.0)
     yield from ((name, amount.max(axis=1)) for name, amount in missed.items())

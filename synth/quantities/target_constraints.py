@@ -56,7 +56,7 @@ class AtTarget:
         return sides + [(_along(place, row[0]), row[1]) for row in _hull(limited)]
 
     def fixed(self, design: Design) -> list[Any]:
-        """Numbers that are fixed, less what they must be."""
+        """Fixed numbers less their values."""
         return [value - low for value, (low, high) in self.numbers(design) if low == high]
 
     def free(self, design: Design) -> list[Any]:
@@ -127,7 +127,7 @@ def target_constraints(problem: Problem) -> tuple[Constraint, ...]:
 
 
 def _beyond(value: Any, low: float, high: float) -> list[Any]:
-    """Excess over the sides that are there; beyond rounding, of a number that is fixed."""
+    """Excess over finite limits; for a fixed number, beyond rounding."""
     if low == high:
         low, high = low - ROUNDING * max(1.0, abs(low)), high + ROUNDING * max(1.0, abs(high))
     return [low - value] * bool(np.isfinite(low)) + [value - high] * bool(np.isfinite(high))
@@ -143,7 +143,7 @@ def _along(place: Any, normal: complex) -> Any:
 
 
 def _distance(design: Design, ends: Sequence[str], k: int) -> Any:
-    """Distance of two points at a target."""
+    """Distance between two points at a target."""
     one, other = (getattr(design, end) if end in ("o2", "o4") else getattr(design, end)[k] for end in ends)
     return _square(_from(one, other)) ** 0.5
 
@@ -158,8 +158,8 @@ def _links(design: Design, k: int) -> tuple[Any, Any, Any]:
 def _held(design: Design, k: int) -> tuple[Any, Any]:
     """From A to a point of link 3, and the line across which that has no velocity.
 
-    B, which moves square to O4B, or along a slide; of a rod that slides in a block the point at O4, which
-    moves along the rod.
+    B, which moves perpendicular to O4B, or along a slide; for a rod that slides in a block the point at O4,
+    which moves along the rod.
     """
     a, b = design.a[k], design.b[k]
     if design.r3 is None:

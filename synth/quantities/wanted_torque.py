@@ -1,4 +1,4 @@
-"""Drive torques of the search where others are wanted, and their deviations.
+"""Deviations of drive torques from a wanted torque in the search.
 
 Written once for arrays and for CasADi symbols, as in `grashof.synth.quantities.formulas`.
 """
@@ -22,10 +22,10 @@ from grashof.synth.quantities.loading import Loading, Numbers
 
 @dataclass(frozen=True, slots=True)
 class WantedCurve:
-    """Wanted torques as numbers of the search. It hashes, so that a programme can be kept for it."""
+    """Wanted torques in units of the search; hashable, so that a programme can be kept for them."""
 
     over: str
-    # Of each row: rad that the driver has turned, the share of the time of the motion, or a target from 0.
+    # Of each row: rotation of the driver, rad; the share of the time of the motion; or a target from 0.
     places: Numbers
     torques: Numbers  # in reference torques, positive where they drive
     weight: float  # the position error, sizes, that counts as much as a deviation of one reference torque
@@ -35,7 +35,7 @@ class WantedCurve:
 
     @classmethod
     def of(cls, problem: Problem) -> WantedCurve | None:
-        """That of a problem; None without one."""
+        """The wanted torque of a problem; None without one."""
         wanted, loading = problem.torque, Loading.of(problem)
         if wanted is None or loading is None:
             return None

@@ -100,7 +100,7 @@ def conclude(
 def _explained(
     scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run
 ) -> tuple[Sequence[Candidate], tuple[Candidate, ...], str]:
-    """Designs to list, the closest misses and a note; few searches need an explanation."""
+    """Designs to list, the closest misses, and a note."""
     if chosen.designs:
         return chosen.designs, (), ""
     from grashof.synth.results.explain import explain
@@ -110,7 +110,7 @@ def _explained(
 
 
 def _with_parts(designs: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
-    """The designs, the first of them with struts and springs where the problem states an effort."""
+    """The designs; the first of them have struts and springs where the problem states an effort."""
     if not designs or not designs[0].problem.states(Needs.EFFORT):
         return designs
     from grashof.synth.designs.efforts import with_best_parts

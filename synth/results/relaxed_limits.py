@@ -172,7 +172,7 @@ def _changes(
 
 
 def _named_widened(key: str, asked: Mapping[str, Limits], missed: list[Defect]) -> tuple[dict[str, Any], str]:
-    """Limits by name that a design keeps."""
+    """Limits by name, widened so that a design keeps them."""
     reached = {
         name: _reaching(asked[name], [defect.found for defect in missed if defect.what == name])
         for name in dict.fromkeys(defect.what for defect in missed)

@@ -30,8 +30,8 @@ AS_IT_IS = "Not_Solved"  # status of a design that was judged as the search prop
 # `Defect.miss`; share of a zone).
 MORE, BEYOND, A_LITTLE, OF_ZONE = 5, 1.05, 0.2, 1e-4
 STRIDE = 0.3  # sizes: greatest move of a six-bar's pivots in a solve
-STRIDES = 3  # most solves with such moves
-NEARER = (0.2, 0.05, 0.01)  # sizes: neighbourhoods of starts that are tried where farther solves end in areas
+STRIDES = 3  # greatest number of such solves
+NEARER = (0.2, 0.05, 0.01)  # sizes: neighbourhoods of a start, tried where a free solve ends in an area
 # Fields that can be tightened.
 TIGHTENED = {
     "within", "transmission_min_deg", "size",
@@ -96,7 +96,7 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
 
 
 def _clear(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
-    """A solve; where it moves parts into areas between the targets, one nearer to the start, or none.
+    """A solve; where it moves parts into areas between the targets, a solve nearer to the start, or none.
 
     No constraint keeps parts out of areas between the targets, but starts are screened there.
     """

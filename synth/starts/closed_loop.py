@@ -41,7 +41,7 @@ class SearchTargets:
     formulas: Formulas | None = None  # by default those of the kind
     spare: float = 0.0  # share by which limits are narrower here
     torque: WantedCurve | None = None  # wanted, where the deviation from it counts as an error
-    count: int = 0  # of the targets of the task, by which it counts
+    count: int = 0  # number of targets of the task, for the weight of the torque
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 

@@ -1,6 +1,6 @@
-"""Linkages of two or three poses that come near a wanted torque: many at once, by what the poses leave free.
+"""Linkages of two or three poses near a wanted torque: many at once, by their free numbers.
 
-The deviation has many local minima, and none of the sampled linkages need lie in the best one.
+The deviation has many local minima, and perhaps no sampled linkage lies in the best one.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.theory.burmester import Displacements, Dyads, bisector_dyads, circle_dyads
 from grashof.synth.theory.stopping import raise_if_overdue
 
-# Linkages that are improved: the nearest, and some of the others, as the best may be far from its minimum;
+# Linkages that are improved: the nearest, and some of the others, since the best may be far from its minimum;
 # numbers of those that continue, and their steps before that.
 KEPT, OTHERS = 300, 1200
 STAGES = ((300, 6), (300, 20))
@@ -37,10 +37,11 @@ def seeks_torque(scaled: ScaledProblem) -> bool:
 
 
 def nearer_to_torque(scaled: ScaledProblem, motion: Displacements, linkages: Screened) -> Screened:
-    """Linkages that Levenberg-Marquardt makes of some through two or three poses, and the best as they are.
+    """Linkages through two or three poses, improved by Levenberg-Marquardt, and the best unchanged.
 
-    They keep all limits but those of the deviation, or nearly, so that the programme mends them. The numbers
-    are the logarithms of AP and BP and, of two poses, how far the ground pivots lie from the chords of A, B.
+    They keep all limits except those of the deviation, or nearly, so that the programme can correct them. The
+    numbers are the logarithms of AP and BP and, for two poses, the distances of the ground pivots from the
+    chords of A and B.
     """
     kept = linkages[_sound(linkages)]
     deviation = _deviations(scaled, kept)
@@ -59,7 +60,7 @@ def nearer_to_torque(scaled: ScaledProblem, motion: Displacements, linkages: Scr
 
 
 def _stride(count: int) -> int:
-    """By which linkages are thinned that do not come near by themselves."""
+    """Step by which the other linkages are thinned."""
     return max(1, -(-(count - KEPT) // OTHERS))
 
 
@@ -143,10 +144,10 @@ def _dyads(scaled: ScaledProblem, motion: Displacements, x: FloatArray) -> Dyads
 
 
 def _middle(motion: Displacements, joint: ComplexArray) -> ComplexArray:
-    """Between the two places of a joint."""
+    """The middle between the two places of a joint."""
     return bisector_dyads(motion, joint, np.zeros(len(joint))).ground
 
 
 def _across(motion: Displacements, joint: ComplexArray) -> ComplexArray:
-    """The unit vector square to the way from one to the other."""
+    """The unit vector perpendicular to the line between the two places."""
     return bisector_dyads(motion, joint, np.ones(len(joint))).ground - _middle(motion, joint)

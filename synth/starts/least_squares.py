@@ -35,7 +35,7 @@ from grashof.synth.starts.loop_search import (
 from grashof.synth.starts.thinning import refined, thinned
 from grashof.synth.theory.stopping import raise_if_overdue
 
-DRAWS, TIMED_DRAWS = 2000, 600  # of a round; as many more where limits bind, whose minima are narrower
+DRAWS, TIMED_DRAWS = 2000, 600  # of a round; twice as many where limits bind, whose minima are narrower
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
 FEW_TARGETS = 40  # of a longer task decide which linkages are worth the rest
 # Where no limit binds: numbers of the best that continue, and their steps.

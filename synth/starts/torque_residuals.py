@@ -10,12 +10,12 @@ from grashof.synth.loop.vector import Vector
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.limit_residuals import Placement
 
-OPEN = 1e3  # reference torques: the deviation where a linkage has no torque
+OPEN = 1e3  # reference torques: deviation of a linkage without a torque
 Residuals = tuple[FloatArray, FloatArray]  # (n, K), and their derivatives by the unknowns, (n, K, M)
 
 
 def torque_residuals(target: SearchTargets, at: Placement, batch: Batch) -> Residuals:
-    """Weighted drive torques minus the wanted ones, sizes, of a batch where it stands."""
+    """Weighted drive torques minus the wanted ones, sizes, of a batch in its present state."""
     curve, (count, _, width) = target.torque, at.by_theta3.shape
     if curve is None:
         return np.zeros((count, 0)), np.zeros((count, 0, width))

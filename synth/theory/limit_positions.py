@@ -149,7 +149,7 @@ def crank_shapers(swing: float, side: float, share: FloatArray) -> StrokeLinkage
     offset over the greatest that a full turn allows; the least of the grid counts as none. The lengths are r1
     (1), r2 and the offset.
 
-    The crank is square to the rod in both limit positions, in which the rod has the directions
+    The crank is perpendicular to the rod in both limit positions, in which the rod has the directions
     -asin(r2 − offset) and asin(r2 + offset) from the ground line. With p between 0 and 90° − swing/2
 
         r2 = sin(swing/2) cos p        offset = cos(swing/2) sin p

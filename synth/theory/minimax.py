@@ -1,4 +1,4 @@
-"""Least greatest value of several functions within limits, by linear programmes."""
+"""Minimax of several functions within limits, by linear programmes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 
-_STEP = 1e-7  # of differences
+_STEP = 1e-7  # step of differences
 _ROUNDS, _FIRST, _LEAST, _WIDEST = 40, 0.02, 1e-9, 0.3  # programmes, and their region of trust
 _GAIN = 1e-10  # of the greatest value; less does not justify another programme
 _WEIGHT = 300.0  # of a limit against a value
@@ -25,8 +25,8 @@ def by_linear(
     """Unknowns (n,) that minimise the greatest value within the limits, by programmes in a region of trust.
 
     Where as many values and limits meet as there are unknowns, this converges as Newton's method does (Madsen
-    1975, minimax); a limit that is overstepped costs in proportion, so the search may begin, and end, outside
-    the limits. Unknowns, values and margins are to be of the order of 1.
+    1975, minimax); a missed limit costs in proportion, so the search may begin and end outside the
+    limits. Unknowns, values and margins are to be of the order of 1.
 
     Examples
     --------

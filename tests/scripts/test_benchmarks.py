@@ -130,7 +130,7 @@ def test_benchmarks_of_searches_measure(run: Any) -> None:
 
 @pytest.mark.study
 def test_the_benchmark_of_struts_measures(run: Any) -> None:
-    """The independent search has the same effort in mind as the judge: it comes close to the other."""
+    """The independent search computes the effort as the judge does: both deviations are close."""
     found = re.search(r"design 1: (.*) N in .* independently (.*) N in", run("struts", "trunk", 1))
     assert found is not None
     mine, theirs = map(float, found.groups())

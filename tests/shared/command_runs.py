@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 Grashof = Callable[..., Any]  # the fixture of this name
-# Solved in no time.
+# Solved quickly.
 BASE = """\
 kind = "path"
 length_unit = "mm"

@@ -97,7 +97,7 @@ def _slider_cranks(draw: st.DrawFn, kind: GrashofClass) -> SliderCrank:
     if kind is GrashofClass.SLIDER_CRANK:
         r3 = r2 + draw(st.floats(0.2, 3))
         offset = (r3 - r2) * draw(st.floats(-0.9, 0.9))
-    elif draw(st.booleans()):  # swings beside the line square to the slide, in two ranges
+    elif draw(st.booleans()):  # swings beside the line perpendicular to the slide, in two ranges
         r3 = r2 * draw(st.floats(0.2, 0.9))
         offset = (r2 - r3) * draw(st.floats(-0.9, 0.9))
     else:

@@ -51,7 +51,7 @@ def place_of(page: Page, handle: str) -> tuple[float, float]:
 
 
 def drag(page: Page, handle: str, by: tuple[float, float], steps: int = 5) -> None:
-    """A handle is dragged by px."""
+    """Drag a handle by px."""
     x, y = place_of(page, handle)
     page.mouse.move(x, y)
     page.mouse.down()

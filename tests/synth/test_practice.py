@@ -94,7 +94,7 @@ def test_the_garage_door_hangs_on_its_track() -> None:
 
 
 def inner_and_outer(linkage: FourBar, straight: float, inner: float) -> tuple[float, float]:
-    """Turns of the outer wheel in a left and in a right lock, deg, where the inner one turns so far.
+    """Turns of the outer wheel in a left and in a right lock, deg, at turns of the inner one.
 
     By circles about A, or B, and the other king pin; `straight` is the driver angle straight ahead, rad.
     """

@@ -1,4 +1,4 @@
-"""Designs found under regions keep them, those of tasks without places and those at single targets, too."""
+"""Designs found under regions keep them, also regions of tasks without places and at single targets."""
 
 from dataclasses import replace
 from typing import Any

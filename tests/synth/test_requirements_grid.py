@@ -246,7 +246,7 @@ def solved_from_those_that_miss(scaled: ScaledProblem, of: Pool, beyond: FloatAr
 
 
 def distances(design: Values, pair: str) -> FloatArray:
-    """Of two points at the targets, by the intersection of circles about A and O4."""
+    """Distances of two points at the targets, by the intersection of circles about A and O4."""
     linkage, theta2 = design.linkage, design.verdict.theta2
     o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
     a = o2 + linkage.r2 * np.exp(1j * theta2)
@@ -296,7 +296,7 @@ SLANTED = np.exp(0.4j)
 
 
 def places(of: Pool, name: str) -> ComplexArray:
-    """Of a joint of every linkage, at every target: (n, N), or (n, 1)."""
+    """Places of a joint of every linkage, at every target: (n, N), or (n, 1)."""
     every = [each.parts(name) for each in of.known]
     return np.array([each["x"] + 1j * each["y"] for each in every])
 
@@ -334,7 +334,7 @@ def contains(region: Region, at: ComplexArray) -> Any:
 
 
 def distance_from(line: ComplexArray, at: ComplexArray) -> FloatArray:
-    """Of places from a polyline, by turning each of its sides onto the real axis."""
+    """Distances of places from a polyline, by turning each of its sides onto the real axis."""
     away = np.full(at.shape, np.inf)
     for begin, end in pairwise(line.tolist()):
         turned = (at - begin) * abs(end - begin) / (end - begin)

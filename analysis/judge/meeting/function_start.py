@@ -24,7 +24,7 @@ _CLOSE = 1e-10  # rad, between starts: no closer
 _SAMPLES, _FINE = 97, 385  # of the range, where the greatest error decides: in valleys, and at their bottoms
 _SAME = 1 + 1e-9
 _NOTHING = 1e-12  # rad, or shares of the travel: starts whose errors differ by less are as good
-_SYMMETRIC = 1e-6  # share of r1 by which a linkage may be off its mirror image to be placed by it
+_SYMMETRIC = 1e-6  # share of r1: greatest distance from the mirror image at which a linkage is placed by it
 _ROUNDING = 1e-9  # rad, of driver ranges and transmission angles
 
 
@@ -55,7 +55,7 @@ def moved_output(task: Task, state: Position, direction: int, *, unwrapped: bool
 
 
 def output_rate(linkage: Linkage, task: Task, theta2: FloatArray) -> FloatArray:
-    """Derivative of the output, an angle or a travel, by the driver angle; not finite where dead."""
+    """Derivative of the output, an angle or a travel, by the driver angle; not finite in dead positions."""
     loops, _ = close(linkage.mechanism, operands_of(linkage), theta2)
     moving, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
     link = turns[task.turning_link(linkage.mechanism)]
@@ -106,10 +106,10 @@ def begins(
 
 
 def begins_mirrored(linkage: Linkage, task: Task, by: Input, directions: tuple[int, ...]) -> Beginning | None:
-    """Where a four-bar begins that is its own mirror image at a driver rotation; None where it nowhere is.
+    """Beginning of a four-bar that is its own mirror image at a driver rotation; None where it is nowhere so.
 
-    There the coupler is parallel to the ground: r1 = 2 r2 cos(theta2 - theta1) + r3, or less r3. Of several
-    such positions of its assembly that in which it errs least.
+    There the coupler is parallel to the ground: r1 = 2 r2 cos(theta2 - theta1) + r3, or - r3. Of several such
+    positions of its assembly, the one of least error.
     """
     found: list[tuple[float, int, float]] = []
     search = _Search(linkage, task, by, task.norm == "rms", 0.0)
@@ -131,7 +131,7 @@ def begins_mirrored(linkage: Linkage, task: Task, by: Input, directions: tuple[i
 
 
 def off_mirror(linkage: Linkage, theta2: float) -> float:
-    """Distance of B from the mirror image of A about the line square to the ground link in its middle."""
+    """Distance of B from the mirror image of A about the perpendicular bisector of the ground link."""
     state = solve_position(linkage, theta2)
     o2, o4, a, b = (complex(*place) for place in (linkage.o2, linkage.o4, state.a, state.b))
     ahead = (o4 - o2) / abs(o4 - o2)

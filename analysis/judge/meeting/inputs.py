@@ -1,4 +1,4 @@
-"""How link 2 turns with the input of a function: by an angle, or by the lengthening of a cylinder on it."""
+"""The rotation of link 2 by the input of a function: its angle, or the lengthening of a cylinder on it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import numpy as np
 from grashof.problems import Cylinder, Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 
-_ROUNDING = 1e-9  # rad, or share of the lengths: what misses a range by less is at its end
+_ROUNDING = 1e-9  # rad, or share of the lengths: a value that misses a range by less is at its end
 
 
 class Input(ABC):
-    """What link 2 turns with, from the first target on. Starts are driver angles there, in rad."""
+    """The input that turns link 2, from the first target on. Starts are driver angles there, in rad."""
 
     @abstractmethod
     def turned(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
@@ -54,7 +54,7 @@ class ByAngle(Input):
     def starts(self, reach: Limits, direction: int, span: Limits) -> Sequence[Limits]:
         back, on = (-span[0], span[1]) if direction > 0 else (span[1], -span[0])
         low, high = reach[0] + back, reach[1] - on
-        # A range that is as long as the linkage's own leaves one place; rounding must not lose it.
+        # A range as long as the linkage's own leaves one start; rounding must not lose it.
         return [(min(low, high), max(low, high))] if high - low >= -_ROUNDING else []
 
     def starts_of_turn(self, turn: Limits, direction: int, span: Limits) -> Sequence[Limits]:
@@ -146,7 +146,7 @@ class ByLength(Input):
 
 
 def input_of(linkage: Linkage, task: Task, cylinder: Cylinder | None) -> Input | None:
-    """What link 2 turns with in a task; None where a cylinder should turn it and none does."""
+    """The input that turns link 2 in a task; None where a cylinder should turn it and none does."""
     if not task.lengthens:
         return ByAngle()
     return None if cylinder is None else ByLength.of(linkage, cylinder)

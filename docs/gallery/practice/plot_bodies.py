@@ -2,7 +2,7 @@
 A flap and a shelf
 ==================
 
-Two bodies whose positions are stated, and a motor or a bed that moves them.
+Two bodies with stated positions, moved by a motor or a bed.
 """
 
 # %%

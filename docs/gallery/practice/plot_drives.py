@@ -7,8 +7,8 @@ A crank or a wheel turns, and something else has to turn, or be somewhere, at th
 
 # %%
 # The wheels of a car turn about one common point if the cotangents of their angles differ by the track over
-# the wheelbase. ``mirror_deg`` states where the trapezium is its own mirror image, straight ahead: so both
-# locks are alike. It errs by at most 0.78 deg; two numbers, the length and the angle of the arms, are free.
+# the wheelbase. ``mirror_deg`` states where the trapezium is its own mirror image, straight ahead, so that
+# both locks are alike. Its error is at most 0.78 deg; only the length and the angle of the arms are free.
 
 from grashof import load, plot_linkage, synthesize
 
@@ -55,9 +55,9 @@ plot_linkage(best, robot)
 print(robot.source)
 
 # %%
-# The rear suspension of a bicycle. The inputs are lengths of the shock, from compressed to long, and ``rate``
-# bounds the leverage ratio at both ends, so that the suspension becomes stiffer over its travel. The ratio is
-# the arm of the axle, 440 mm, times the turning of the swingarm for a millimetre of the shock.
+# The rear suspension of a bicycle. The inputs are lengths of the shock, from compressed to extended, and
+# ``rate`` limits the leverage ratio at both ends, so that the suspension becomes stiffer over its travel. The
+# ratio is the arm of the axle, 440 mm, times the rotation of the swingarm for a millimetre of the shock.
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -2,8 +2,8 @@
 Lids and doors
 ==============
 
-Six bodies that a hand moves: their positions are known, and hinges have to be found that fit into the little
-room beside them.
+Six bodies moved by hand: their positions are known, and their hinges have to fit into the little room beside
+them.
 """
 
 # %%
@@ -49,8 +49,8 @@ print(garage.source)
 assert best.verdict.ok
 
 # %%
-# The lid of a tool chest has to get over the carrying handle at its back edge. Two poses and the area of
-# chest and handle are all that is stated; the links of the best designs cross on the way.
+# The lid of a tool chest has to pass over the carrying handle at its back edge. Only two poses and the area
+# of chest and handle are stated; the links of the best designs cross on the way.
 
 chest = load("tool-chest-lid")
 best = synthesize(chest, enough=6).best
@@ -60,7 +60,7 @@ assert best.verdict.ok
 
 # %%
 # The door of a table greenhouse, roof and front wall in one piece, folds up and back. Of the second and third
-# pose only the place of its lower corner counts.
+# pose only the position of its lower corner is stated.
 
 greenhouse = load("greenhouse-door")
 best = synthesize(greenhouse, enough=6).best

@@ -8,8 +8,8 @@ pushes it further against its stop.
 
 # %%
 # The drag brace of a landing gear. ``past_deg`` under ``at`` puts driver and coupler 2 to 5 deg past
-# toggle when the leg is down. P is close to where the lower brace joins the leg, so that three points
-# on a circle about the trunnion state how the leg moves.
+# toggle when the leg is down. P is close to the joint of the lower brace and the leg, so that three points
+# on a circle about the trunnion state the motion of the leg.
 
 import numpy as np
 

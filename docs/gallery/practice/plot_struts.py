@@ -2,8 +2,8 @@
 Lids on gas struts
 ==================
 
-A lid on a hinge still has to be lifted. Gas struts take its weight, at best so that the hand feels what it
-should at every angle, in summer and in winter.
+A lid on a hinge still has to be lifted. Gas struts take its weight, at best so that the hand feels the wanted
+effort at every angle, in summer and in winter.
 """
 
 # %%

@@ -88,7 +88,7 @@ class DynamicsSpec(TableValue):
     strength : StrengthSpec, optional
         Of the bars and pins.
     effort : EffortSpec, optional
-        By which a hand moves the linkage, and the struts and springs that give it.
+        The effort by which a hand moves the linkage, with its struts and springs.
 
     Raises
     ------
@@ -193,7 +193,7 @@ class DynamicsSpec(TableValue):
 
     @property
     def beside_task(self) -> list[str]:
-        """Errors of what a problem states by its task."""
+        """Keys that do not go with a problem, a line each."""
         if self.effort is None or self.effort.travel_deg is None:
             return []
         return ["effort.travel_deg does not go with a problem; it travels from the first target to the last"]

@@ -1,4 +1,4 @@
-"""The effort that moves a linkage by hand, as it is wanted over its travel."""
+"""The wanted effort that moves a linkage by hand, over its travel."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ SQUARE = "square"
 OVER = ("link", "driver")
 MOST_PARTS = 2
 _MOST_TEMPERATURES = 9
-_FAR = 3600.0  # deg, of the travel
+_FAR = 3600.0  # deg, greatest angle of the travel
 
 
 class Demand(NamedTuple):
-    """What is wanted of the effort over a part of the travel.
+    """Limits of the effort over a part of the travel.
 
-    Angles are in deg; `most` and `least`, N, hold at `start` and `end`, and change evenly between. `friction`
-    is the number of times that friction is added to both: -1 within it, +1 beyond it. `opening` tells whether
-    the effort is counted in the sense of the travel, or along its direction.
+    Angles are in deg; `most` and `least`, N, hold at `start` and `end`, and change linearly between them.
+    `friction` is the multiple of the friction that is added to both: -1 within it, +1 beyond it. With
+    `opening` the effort is positive in the sense of the travel, otherwise along its direction.
     """
 
     words: str
@@ -42,30 +42,30 @@ class Demand(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class EffortSpec(TableValue):
-    """The effort by which a linkage is moved, or held, by hand, and what is wanted of it.
+    """The wanted effort by which a linkage is moved, or held, by hand.
 
     Parameters
     ----------
     on : EffortPlace
         The point at which the hand acts.
     direction : "square" or pair of float
-        Of the effort: square to the arm of the point, which is along its path and positive in the sense of
-        the travel; or a fixed direction (x, y).
+        Direction of the effort: along the path of the point, positive in the sense of the travel; or a fixed
+        direction (x, y).
     wanted : sequence of rows (deg, N), optional
-        The effort, which changes evenly from row to row.
+        The effort, which changes linearly from row to row.
     band : pair of float, N, optional
-        Instead: limits of the effort, over the entire travel.
+        Instead, limits of the effort over the entire travel.
     stays_deg : pair of float, deg, optional
         Angles between which the linkage stays where it is left: friction holds it.
     closes_below_deg : float, deg, optional
-        Angle below which it returns to the start of the travel by itself, against friction.
+        Angle below which the linkage returns to the start of the travel by itself, against friction.
     temperatures_c : tuple of float, deg C
-        At which all of this holds.
+        Temperatures at which all of this holds.
     over : {"link", "driver"}
-        Whose rotation the angles are, from the start of the travel: that of the link that the hand acts on,
-        or of link 2.
+        The link whose rotation from the start of the travel the angles are: that on which the hand acts, or
+        link 2.
     travel_deg : pair of float, deg, optional
-        Driver angles at which the travel begins and ends; of a linkage file alone, as a problem's travel goes
+        Driver angles at which the travel begins and ends, in linkage files only: the travel of a problem goes
         from its first target to its last. By default the range of the driver.
     parts : tuple of PartSpec
         Struts and springs, up to two; without any the effort alone is reported.
@@ -73,7 +73,7 @@ class EffortSpec(TableValue):
     Raises
     ------
     ProblemError
-        Nothing is wanted, or wanted twice, or numbers that contradict each other.
+        No wanted effort, two of them, or numbers that contradict each other.
 
     Examples
     --------
@@ -130,7 +130,7 @@ class EffortSpec(TableValue):
 
     @property
     def demands(self) -> tuple[Demand, ...]:
-        """What is wanted, over parts of the travel; an infinite end is that of the travel."""
+        """The limits over parts of the travel; an infinite end is that of the travel."""
         found = []
         rows = self.wanted or ()
         for (start, first), (end, last) in itertools.pairwise(rows):
@@ -147,12 +147,12 @@ class EffortSpec(TableValue):
 
     @property
     def is_placed(self) -> bool:
-        """Whether nothing is left to choose."""
+        """Whether every part has one size and one place."""
         return all(part.is_placed for part in self.parts)
 
     @property
     def links(self) -> dict[str, int | str]:
-        """The links that it names, by key."""
+        """The links of the hand and of the parts, by key."""
         found = {"effort.on.link": self.on.link}
         for index, part in enumerate(self.parts):
             for end, place in enumerate(part.places):

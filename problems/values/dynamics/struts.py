@@ -1,4 +1,4 @@
-"""Struts and springs for an effort: their sizes, and where they may be."""
+"""Struts and springs for an effort: their sizes, and the places of their ends."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ ORIGIN = Box((0.0, 0.0), (0.0, 0.0))
 
 @dataclass(frozen=True, slots=True)
 class EffortPlace(TableValue):
-    """A point of a link, or the area that it may lie in.
+    """A point of a link, or the area in which it may lie.
 
     Parameters
     ----------
     link : int or "body"
         1 (the ground, whose frame is the global one) to 4; of a six-bar to 6; or the guided body, whose
-        frame is at P and turned by `body_angle` against the link of P.
+        frame is at P and turned by `body_angle` relative to the link of P.
     at : Box, length
-        In that frame: a box, which is a point where it has no width, or a segment (`Region`).
+        Place in that frame: a box, which is a point where it has no width, or a segment (`Region`).
     """
 
     link: int | str
@@ -85,7 +85,7 @@ class PartSize(TableValue):
     Parameters
     ----------
     name : str
-        Of the size.
+        Name of the size.
     extended : float, length
         Greatest length from pivot to pivot; of struts and straight springs.
     stroke : float, length
@@ -93,13 +93,13 @@ class PartSize(TableValue):
     force_extended : float, N
         Force at the greatest length, at 20 deg C.
     force_compressed : float, N
-        Force at the least length, at 20 deg C; it changes evenly between the two.
+        Force at the least length, at 20 deg C; it changes linearly between the two.
     moment : float, N m
-        Of a torsion spring: moment at its greatest turn; it grows evenly from the free angle.
+        Moment of a torsion spring at its greatest turn; it grows linearly from the free angle.
     turn_deg : float, deg
-        Of a torsion spring: greatest turn from the free angle, either way.
+        Greatest turn of a torsion spring from the free angle, either way.
     friction : float, N
-        Force against its motion; of a torsion spring a moment, N m.
+        Friction force against its motion; a moment in N m for a torsion spring.
     """
 
     name: str = ""
@@ -142,11 +142,11 @@ class PartSpec(TableValue):
     between : pair of EffortPlace or int
         Its two ends; of a torsion spring the two links of a joint, as `TorsionSpringSpec` has them.
     sizes : tuple of PartSize
-        To choose from.
+        The sizes to choose from.
     count : int
-        Number of equal ones side by side.
+        Number of equal parts side by side.
     free_angle_deg : pair of float, deg, optional
-        Of a torsion spring: limits of the angle of the second link less that of the first where it is slack.
+        Limits of the free angle of a torsion spring: angle of the second link less that of the first.
     """
 
     kind: str
@@ -203,7 +203,7 @@ class PartSpec(TableValue):
 
     @property
     def is_placed(self) -> bool:
-        """Whether nothing is left to choose."""
+        """Whether it has one size and one place."""
         angle = self.free_angle_deg
         fixed = all(each.is_point for each in self.places) and (angle is None or angle[0] == angle[1])
         return len(self.sizes) == 1 and fixed

@@ -1,4 +1,4 @@
-"""The drive torque that is wanted at places of the task motion."""
+"""The wanted drive torque at places of the task motion."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ PLACES = {"driver": (360.0, " deg"), "share": (1.0, ""), "target": (1e4, "")}
 
 @dataclass(frozen=True, slots=True)
 class WantedTorque(TableValue):
-    """Drive torques that are wanted over the task motion: the deviation from them is a quantity.
-
-    `ProblemError` for rows that do not rise or lie outside the motion, and numbers outside their ranges.
+    """Wanted drive torques over the task motion: the deviation from them is a quantity.
 
     Parameters
     ----------
@@ -30,11 +28,16 @@ class WantedTorque(TableValue):
         (place, torque in N m), places rising. A torque is positive where it drives link 2 in its sense from
         the first target to the last, and negative where it holds it back.
     over : {"driver", "share", "target"}
-        The places: deg that link 2 has turned since the beginning of the motion; the share of its way to
-        the end, 0 to 1; or numbers of targets, from 1.
+        The variable of the places: rotation of link 2 from the beginning of the motion, deg; the share of its
+        rotation to the end, 0 to 1; or numbers of targets, from 1.
     weight : float
-        In least squares, the position error in sizes of the task that counts as much as a deviation by the
-        greatest wanted torque; with 0 the deviation is not minimised.
+        In least squares, the position error in sizes of the task that counts as much as a deviation (root
+        mean square) by the greatest wanted torque; with 0 the deviation is not part of the error.
+
+    Raises
+    ------
+    ProblemError
+        Rows that do not rise or lie outside the motion, or numbers outside their ranges.
 
     Examples
     --------
@@ -81,5 +84,5 @@ class WantedTorque(TableValue):
 
     @property
     def greatest(self) -> float:
-        """The greatest magnitude of them, N m."""
+        """The greatest magnitude of the torques, N m."""
         return float(np.abs(self.torques).max())

@@ -54,7 +54,7 @@ class Distances(NamedLimits):
         ]
 
     def wrong(self, task: Task, where: str) -> list[str]:
-        """Distances that do not apply to a task, a line each."""
+        """Errors for distances that do not apply to a task, a line each."""
         if "p" not in task.without:
             return []
         named = (name for name in self if "p" in ends_of(name))

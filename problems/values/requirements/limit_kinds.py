@@ -12,7 +12,7 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.requirements.quantities import Quantity
 
-# What files may state of the coupler, and how far both ends of a range are apart at least: deg, and rates.
+# Allowed directions (deg) and rates of the coupler in files, and the least widths of their ranges.
 HEADINGS, RATES = (-360.0, 360.0), (-1e6, 1e6)
 NARROW_HEADING, NARROW_RATE = 0.1, 1e-3
 
@@ -26,10 +26,10 @@ class Kind(Enum):
     EQUAL = auto()  # an angle
     DIRECTION = auto()  # an angle, or [lo, hi]
     INSIDE = auto()  # a box or a region in the plane
-    ON_BODY = auto()  # one in the body's frame
+    ON_BODY = auto()  # a box or a region in the body's frame
     WORD = auto()  # one of several words, each allowing a range
     HEADING = auto()  # [lo, hi] of a direction that changes, unique up to full turns
-    NAMED = auto()  # [lo, hi] of each of some numbers by name, as ratios of links
+    NAMED = auto()  # [lo, hi] of several numbers by name, such as ratios of links
 
     @property
     def is_angle(self) -> bool:

@@ -1,4 +1,4 @@
-"""Limits of several numbers of one quantity, each by its name, such as those of ratios of links."""
+"""Limits of several numbers of one quantity by their names, such as ratios of links."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from grashof.problems.values.errors import ProblemError, shown_key, wrong_value
 class NamedLimits(Mapping[str, Limits]):
     """Limits by name; read-only."""
 
-    example: ClassVar[str]  # what a file may state
+    example: ClassVar[str]  # a table in a file
     allowed: ClassVar[Limits]  # the least and the greatest value
 
     rows: tuple[tuple[str, Limits], ...] = ()

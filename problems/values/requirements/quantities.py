@@ -97,19 +97,19 @@ _STATED = {
     "r3": "r3, coupler A-B",
     "r4": "r4, output link O4-B",
     "p_u": "P along its link",
-    "p_v": "P square to its link",
+    "p_v": "P perpendicular to its link",
     "r5": "r5, link 5, C-E",
     "r6": "r6, link 6, D-E",
     "c_u": "C along its link",
-    "c_v": "C square to its link",
+    "c_v": "C perpendicular to its link",
     "d_u": "D along its link",
-    "d_v": "D square to its link",
+    "d_v": "D perpendicular to its link",
     "offset": "offset of the slide",
     "offset_2": "offset of the second slide",
     "cylinder_base_x": "cylinder, fixed pivot, x",
     "cylinder_base_y": "cylinder, fixed pivot, y",
     "cylinder_u": "cylinder, moving pivot, along its link",
-    "cylinder_v": "cylinder, moving pivot, square to its link",
+    "cylinder_v": "cylinder, moving pivot, perpendicular to its link",
 }
 
 
@@ -176,12 +176,11 @@ _FITTED = "minimised by least squares: root mean square of positions and angles 
 RMS = " (root mean square)"
 _ALL = f"error of positions and angles{RMS}"
 _WORST = "worst transmission angle over the"
-_EFFORT = "with the struts and springs that are placed, at every temperature; 0 where it is as wanted"
-_EFFORT = "with the struts and springs that are placed, at every temperature; 0 where it is as wanted"
+_EFFORT = "with its struts and springs, at every temperature; 0 where the effort is within its limits"
 _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
-_RATE = "change of its length for a radian of link 4: the arm with which its force turns link 4"
+_RATE = "change of its length for a radian of link 4: the moment arm of its force on link 4"
 _TASK = "from the first target to the last"
 _MISSED: dict[str, Any] = {"over": Scope.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Scope.TASK, "about": _TASK}

@@ -131,11 +131,12 @@ class Requirements(ReadOnly):
     cylinder_force_max : tuple of float, N, optional
         (lo, hi) for its greatest force.
     cylinder_rate : tuple of float, length, optional
-        (lo, hi) for the change of its length for a radian of link 4, over the task motion.
+        (lo, hi) for the change of its length for a radian of link 4, the moment arm of its force, over the
+        task motion.
     coupler_angle_deg : tuple of float, deg, optional
         (lo, hi) for the direction A->B over the task motion; 360 deg more is the same.
     coupler_rate : tuple of float, optional
-        (lo, hi) for the derivative of this direction by the driver angle, over the task motion.
+        (lo, hi) for the derivative of this direction with respect to the driver angle, over the task motion.
     a_on_body, b_on_body : Box or Region, optional
         Where this pivot may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length

@@ -44,17 +44,17 @@ class TargetLimits:
     distances : mapping of str to float or tuple of float, optional
         Distances there, as those of `Requirements`.
     links : pair of str
-        The links of `past_deg`: "driver" and "coupler". Coupler and output in line are a dead position of the
-        driver, which no task motion passes; exchange O2 and O4, A and B, and the linkage works from its other
-        side.
+        The links of `past_deg`: "driver" and "coupler". With coupler and output in line the driver is in a
+        dead position, which no task motion passes; for that, exchange O2 and O4, A and B, so that the output
+        becomes the driver.
     past_deg : tuple of float, deg, optional
         Angle of driver and coupler past toggle there (O2, A and B in line), (lo, hi), from -45 to 45, as in a
-        clamp or brace. Positive where the motion from the first target, of the first one that back from the
-        last, passes the toggle position.
+        clamp or brace. Positive where the motion from the first target (for the first target, the motion back
+        from the last) passes the toggle position.
     coupler_angle_deg : tuple of float, deg, optional
         Direction A->B there, (lo, hi).
     coupler_rate : tuple of float, optional
-        Derivative of this direction by the driver angle there, (lo, hi).
+        Derivative of this direction with respect to the driver angle there, (lo, hi).
     transmission_min_deg : float, deg, optional
         Least min(mu, pi - mu) there.
     mechanical_advantage_min : float, optional

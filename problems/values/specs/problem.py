@@ -64,8 +64,8 @@ class Search:
     starts : int
         Most Ipopt solves.
     enough : int
-        Exact tasks: stop between batches once this many distinct designs are verified. Least squares with 1:
-        find the design of least error alone, without a list to choose from.
+        Exact tasks: stop between batches once this many distinct designs are verified. Least squares: with 1
+        only the design of least error is found, without a list to choose from.
     seed : int
         Random seed.
     effort : float
@@ -113,7 +113,7 @@ class Problem(ReadOnly):
     driver : CylinderSpec, optional
         The cylinder that drives the linkage, in place of a crank on link 2.
     torque : WantedTorque, optional
-        The drive torque that is wanted; the deviation from it is then the usual objective.
+        The wanted drive torque; the deviation from it is then the default objective.
     """
 
     task: Task

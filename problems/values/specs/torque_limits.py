@@ -1,4 +1,4 @@
-"""A wanted torque that the task, the requirements or the drive contradict."""
+"""Contradictions of a wanted torque with the task, the requirements or the drive."""
 
 from __future__ import annotations
 

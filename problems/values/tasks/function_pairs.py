@@ -77,7 +77,7 @@ def checked_rates(rates: Any, inputs: FloatArray, unit: float, *, lengthens: boo
 
 
 def rates_inside(rates: Any, *, travels: bool, lengthens: bool) -> FloatArray:
-    """Rows [input, lo, hi] of a file, in degrees where inputs and outputs are, as inside."""
+    """Rows [input, lo, hi] of a file, in degrees where inputs and outputs are, converted to radians."""
     at, *limits = _rows(rates).T
     at = at if lengthens else np.radians(at)
     if travels != lengthens:  # degrees for a length, or lengths for a degree
@@ -133,7 +133,7 @@ def _refuse_turns(angles: FloatArray, key: str) -> None:
 
 
 def either(key: str, angles: object, length: object, why: str) -> bool:
-    """Whether something is given as a length; `ProblemError` if it is given as an angle, too."""
+    """Whether a value is given as a length; `ProblemError` if it is given as an angle, too."""
     if angles is not None and length is not None:
         both = f"function.{key}_deg does not go with function.{key}"
         raise ProblemError(f"{both}; {why}, give one of them")

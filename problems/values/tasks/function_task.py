@@ -53,14 +53,14 @@ class FunctionTask(Task):
     The driver is link 2, or a cylinder that turns it.
 
     Angles are relative: both start angles are free, and where pairs need not be met exactly the output's
-    zero is, too, so that the first pair may err as the others.
+    zero is, too, so that the first pair may have an error like the others.
 
     Parameters
     ----------
     inputs : array_like, shape (N,), rad or length
         Driver rotation from the first pair, zero there, then growing over at most one turn. Designs may
-        turn the driver either way. Or the lengthening of the cylinder that drives, from its shortest length
-        on.
+        turn the driver either way. Or the lengthening of the driving cylinder from its shortest
+        length.
     outputs : array_like, shape (N,), rad or length
         Rotation of the link from the first pair, positive where it turns as the driver does; or the travel
         of a slide from there, positive along its direction.
@@ -79,15 +79,15 @@ class FunctionTask(Task):
         The link whose rotation the outputs are: the last one, or link 3, the coupler. Of slider-cranks and
         six-bars the coupler is not searched for.
     lengthens : bool
-        The inputs are lengthenings of the cylinder that drives link 2; not of six-bars.
+        The inputs are lengthenings of the cylinder that drives link 2; not for six-bars.
     rates : array_like, shape (R, 3), optional
         Limits of the leverage ratio d(output)/d(input): rows of input, least and greatest value, with the
         signs of the outputs.
     mirror : float, rad, optional
         Driver rotation from the first pair, or the beginning of a law, at which the linkage is its own mirror
-        image about the line square to the ground link in its middle, r4 = r2 and the coupler parallel to the
-        ground, as the steering of a car straight ahead; the output has no error there. Of four-bars whose
-        pairs need not be met exactly.
+        image about the perpendicular bisector of the ground link: r4 = r2 and the coupler parallel to the
+        ground link, such as the steering of a car straight ahead. The output has no error there. Only for
+        four-bars whose pairs need not be met exactly.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a function states of its output, and of what it depends on; for other tasks nothing."""
+"""The output of a function and the variable that it depends on; for other tasks the default values."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class GeneratedOutput(ABC):
 
     __slots__ = ()
 
-    # What a task need not state, with the value that it then has.
+    # Optional values of a task, with their defaults.
     #: The link whose rotation is the output of a function: "output", the last one, or "coupler", link 3.
     link: str = "output"
     #: Whether the output is the travel of a slide.
@@ -56,7 +56,7 @@ class GeneratedOutput(ABC):
 
     @property
     def inputs(self) -> FloatArray:
-        """What the outputs depend on, from the first target, shape (N,), rad or length."""
+        """The inputs, from the first target, shape (N,), rad or length."""
         return self.driver_turns
 
     def by_turns(self, turned: FloatArray) -> Self:  # noqa: ARG002

@@ -47,7 +47,7 @@ def _cylinder_places(subject: Subject, state: Position) -> dict[str, FloatArray]
 
 
 def _strut_places(subject: Subject, state: Position) -> dict[str, FloatArray]:
-    """Both pivots of each strut or spring, and the end of its body, in N positions, (N, 2) each."""
+    """Both pivots of each strut or spring, and the end of its body, in N positions, shape (N, 2) each."""
     if not subject.struts:
         return {}
     _, rest = virtual_motion(subject.linkage, state.theta2, np.copysign(1.0, state.margins[0]))

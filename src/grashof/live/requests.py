@@ -32,8 +32,8 @@ _DEPTH = 12  # of tables and lists in each other
 class Job:
     """Work for a page, one of `KINDS`, with the problem file as JSON and its name.
 
-    `options` are those of its kind: keys of designs, a kind of file, the text of a drawing, the linkage file
-    of a link; `shown` has the designs of the page, as the previous job left them.
+    `options` are those of the kind: keys of designs, a kind of file, the text of a drawing, the linkage
+    file of a link; `shown` has the designs of the page, as the previous job left them.
     """
 
     what: str
@@ -208,7 +208,7 @@ def _linked(link: str) -> dict[str, Any]:
 def opened(begin: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:
     """The "document" and "name" that a request opens, and the "catalogue".
 
-    They are those of a link, of one of the catalogue, of a file or, if it names none, of the first problem.
+    They are those of a link, of a problem of the catalogue, of a file or, by default, of the first problem.
     """
     found = begin
     if "link" in request:

@@ -17,7 +17,7 @@ from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import rows_of
 
 TOML = "application/toml"
-# Name and type of the files of a run, by "file" of a job.
+# Names and types of the files of a run, by the "file" of a job.
 _LISTS = {
     "list": ("candidates.csv", "text/csv"),
     "designs": ("candidates.json", "application/json"),
@@ -37,7 +37,7 @@ class Saved:
 def saved(job: Job, problem: Problem, there: Mapping[int, Candidate], found: Result | None) -> Saved:
     """The file of a job, of the problem and the verified designs on its page by their keys.
 
-    `found` is their search, if it is done. ProblemError where the file is of a design and none is chosen.
+    `found` is their search, if it has ended. ProblemError where the file needs a design and none is chosen.
     """
     wanted, key = job.options["file"], job.options["key"]
     design = there.get(key)

@@ -152,7 +152,7 @@ def _search(job: Job, stop: Callable[[], bool], send: Callable[[Line], object]) 
 
 
 def _given(job: Job, problem: Problem, send: Callable[[Line], object]) -> Candidate | None:
-    """The linkage of a link, judged for its problem; None, with a line of the reason, where it cannot be."""
+    """The linkage of a link, judged for its problem; where that fails, None, and a line with the reason."""
     if not (text := job.options.get("given")):
         return None
     try:
@@ -176,12 +176,12 @@ def _with(given: Candidate | None, found: Sequence[Candidate]) -> Sequence[Candi
 
 
 def _missed(designs: Mapping[int, Candidate]) -> dict[int, str]:
-    """The defects of those that are not verified."""
+    """The defects of the designs that are not verified."""
     return {key: _defects(one) for key, one in designs.items() if not one.verdict.ok}
 
 
 def _found_line(problem: Problem, shown: Shown, result: Result, given: Candidate | None) -> Line:
-    """The list of a search that is done, or its closest misses; with the linkage of a link."""
+    """The list of a search that has ended, or its closest misses; with the linkage of a link."""
     listed = _with(given, result.candidates)
     found = any(each.verdict.ok for each in listed)
     misses = shown.matched(() if found else _with(given, result.nearest))
@@ -209,7 +209,7 @@ def _list_line(
     lost: Mapping[int, str] | None = None,
     **words: str,
 ) -> Line:
-    """A list as the page draws it; of closest misses where none is `found`."""
+    """A list as the page draws it; of closest misses unless `found`."""
     drawn = {key: one for key, one in designs.items() if moves(one)}
     columns = AT_ONCE if phase == "track" else LISTED
     rows = rows_of(problem, list(drawn.values()), columns)

@@ -39,7 +39,7 @@ from grashof.synth.designs.table import Row
 _SAMPLES = 181
 STEPS = 180
 _ROUNDING = 1e-12  # of a turn
-_BODY = 0.9  # length of the body of a strut over its compressed length
+_BODY = 0.9  # length of the body of a strut as a share of its compressed length
 
 
 def scene_of(problem: Problem) -> dict[str, Any]:
@@ -242,7 +242,7 @@ def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str
 
 
 def _wanted(problem: Problem, verdict: Verdict, ahead: float) -> dict[str, Any]:
-    """Driver angles and wanted torques there, counter-clockwise; empty without them."""
+    """Driver angles and wanted torques there, counter-clockwise; empty without a wanted torque."""
     if problem.torque is None or not verdict.branch_ok:
         return {}
     theta2 = places_of(problem.torque, problem, verdict) - ahead

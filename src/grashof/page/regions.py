@@ -1,4 +1,4 @@
-"""Where joints may be, for the drawings of a page: boxes, polygons and segments, each in words."""
+"""Regions of joints for the drawings of a page: boxes, polygons and segments, each with its name."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from grashof.page.render import plain
 from grashof.problems import Box, Problem, Region, Task
 from grashof.problems.values.arrays import FloatArray
 
-PIVOTS = ("o2", "o4", "d", "a", "b")  # those that are the same are drawn as one, in this order
+PIVOTS = ("o2", "o4", "d", "a", "b")  # equal places are drawn once, in this order
 
 
 def regions_of(problem: Problem) -> list[dict[str, Any]]:
     """Every region that a problem states, as the scripts draw it, with null for an open side.
 
-    Those on the body stand where the first pose has it; they are left out where it is incomplete, and so are
-    those with an open side.
+    Regions on the body are placed at the first pose; they are left out where that is incomplete or a side is
+    open.
     """
     wanted = problem.requirements
     boxes = {name: box for name in PIVOTS if (box := getattr(wanted, name)) is not None}

@@ -53,7 +53,7 @@ def cylinder(study: LinkageStudy) -> Section | None:
     if "output_rate" in over:
         title, shown = "rate of the cylinder dL/dθ4", {"rate": "output_rate"}
         plots.insert(2, curves(over, "cylinder-output-rate", title, f"{unit}/rad", shown))
-        notes.append("dL/dθ4 is the arm with which the force of the cylinder turns link 4, without friction")
+        notes.append("dL/dθ4 is the moment arm of the cylinder's force on link 4")
     if "force" in over:
         plots.append(curves(over, "cylinder-force", "force of the cylinder", "N", {"force": "force"}))
         notes.append("positive forces push; mass and friction of the cylinder itself are left out")

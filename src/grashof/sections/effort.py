@@ -30,7 +30,7 @@ def effort(study: LinkageStudy) -> Section | None:
     if not case.spec.is_placed:
         bare = replace(case.spec, parts=())
         case = replace(case, dynamics=replace(case.dynamics, effort=bare))
-        notes.append("the struts and springs are not placed yet, and left out")
+        notes.append("the struts and springs are not placed yet; they are left out")
     places, state = effort_curves(case)
     figures, columns = effort_figures(case), _columns(case, places, state)
     facts = [*_facts(case, figures)]
@@ -49,8 +49,8 @@ def _meaning(case: EffortCase) -> str:
     square = case.spec.direction == SQUARE
     along = "along its path in the sense of the travel" if square else "in the stated direction"
     return (
-        f"the effort acts on link {link} at ({u:.6g}, {v:.6g}), {along}; moving on takes the friction more, "
-        f"moving back the friction less; angles are those of {_OF[case.spec.over]} from the start"
+        f"the effort acts on link {link} at ({u:.6g}, {v:.6g}), {along}; to move on, add the friction, "
+        f"to move back, subtract it; angles are those of {_OF[case.spec.over]} from the start"
     )
 
 
@@ -71,7 +71,7 @@ def _columns(case: EffortCase, places: FloatArray, state: EffortState) -> dict[s
 
 
 def _at(case: EffortCase) -> list[str]:
-    """Temperatures as names of columns have them."""
+    """Temperatures as parts of column names."""
     return [f"{each:g}c".replace("-", "minus_") for each in case.spec.temperatures_c]
 
 
@@ -110,7 +110,7 @@ def _plots(study: LinkageStudy, case: EffortCase, state: EffortState, columns: C
 
 
 def _wanted(case: EffortCase, state: EffortState) -> dict[str, FloatArray]:
-    """Lines of what is wanted, NaN elsewhere."""
+    """Curves of the wanted effort, NaN elsewhere."""
     found: dict[str, FloatArray] = {}
     for demand in case.spec.demands:
         inside = (state.angle_deg >= demand.start) & (state.angle_deg <= demand.end)

@@ -19,7 +19,10 @@ _IN_LINE = {"stretched": "2 and 3 stretched", "folded": "2 and 3 folded"}
 LIMIT_POSITIONS = {
     DyadKind.RRR: _IN_LINE,
     DyadKind.RRP: _IN_LINE,
-    DyadKind.RPR: {"left": "2 square to the rod, to its left", "right": "2 square to the rod, to its right"},
+    DyadKind.RPR: {
+        "left": "2 perpendicular to the rod, to its left",
+        "right": "2 perpendicular to the rod, to its right",
+    },
 }
 
 

@@ -10,7 +10,7 @@ from grashof.problems.values.dynamics.effort import EffortSpec
 from grashof.problems.values.dynamics.struts import BODY
 from grashof.problems.values.errors import listing
 
-FEW_ROWS = 4  # of a wanted torque, all of which a summary states
+FEW_ROWS = 4  # most rows of a wanted torque that a summary states in full
 
 
 def torque_text(torque: WantedTorque) -> str:
@@ -31,7 +31,7 @@ def loads_text(spec: DynamicsSpec) -> str:
 
 
 def effort_text(spec: EffortSpec) -> str:
-    """What is wanted of the effort, and the parts that are to give it."""
+    """The wanted effort, and its parts."""
     words = [f"effort on {'link ' if spec.on.link != BODY else 'the '}{spec.on.link}"]
     if spec.wanted is not None:
         words.append(f"as wanted in {counted(len(spec.wanted), 'row')}")

@@ -80,7 +80,7 @@ def goals(problem: Problem) -> str:
 
 
 def summary(problem: Problem) -> list[str]:
-    """A problem in a few lines, with its requirements but for limits that are the default ones."""
+    """A problem in a few lines, with its requirements except default limits."""
     task, usual = problem.task, Requirements()
     wanted = problem.requirements.resolved(task.size, scale_free=task.scale_free)
     unit = f" {problem.length_unit}" if problem.length_unit else ""

@@ -182,7 +182,7 @@ def left_out(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> tuple[str,
         without += [name for name in wanted.limited if name in _OF_ORDER and not _says_nothing(wanted, name)]
     moving = wanted.keep_out and not set(wanted.keep_out_for) <= _GROUND
     without += ["keep_out"] * bool(moving) + ["constraints"] * bool(scaled.constraints)
-    without += [name for name in wanted.regions if name in forms]  # the box around has one
+    without += [name for name in wanted.regions if name in forms]  # the box around a region has one
     without += ["at"] * bool(wanted.at)
     return tuple(without)
 

@@ -34,7 +34,7 @@ from grashof.synth.theory.functions.triangle import TriangleLimits, opening_slop
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
 DENSE = 1201  # places among which its extremes are looked for
-RATED = 9  # inputs at which the rate of a cylinder is limited
+RATED = 9  # number of inputs at which the rate of a cylinder is limited
 INSIDE = 4e-8  # margin by which limits are kept, so that rounding misses none
 
 
@@ -232,7 +232,7 @@ def _caps(kind: type[Generators], sizes: Mapping[str, Limits], wanted: Requireme
 def _rates(task: Task, wanted: Requirements, unit: float) -> FloatArray | None:
     """Limits of rates from the beginning of the range, in units of the output, kept by a margin.
 
-    With those of the cylinder's rate dL/dtheta4, whose inverse it is, at some inputs.
+    Limits of the cylinder's rate dL/dtheta4, the inverse of such a rate, are included at some inputs.
     """
     rows = [] if task.rates is None else [task.rates - [task.span[0], 0.0, 0.0]]
     if wanted.cylinder_rate is not None and task.lengthens and not task.travels and task.link == "output":

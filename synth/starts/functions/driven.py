@@ -1,7 +1,7 @@
 """The search for function generators whose input is the lengthening of a cylinder on the driver.
 
-A triangle of O2 and the pivots of the cylinder makes a task in driver angles of it: through few pairs go
-linkages that are known; for more, those that fit best under some triangles are fitted together with these.
+With a triangle of O2 and the pivots of the cylinder, the task becomes one in driver angles: through few pairs
+the linkages are known; for more pairs, the best fits under some triangles are fitted together with these.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from grashof.synth.theory.stopping import stop_requested
 
 TRIANGLES = 240  # from which least squares begins
 ENDS, LONG = 12, 120  # of the best fits that are refined where pairs are met, and the steps of each
-HALVINGS, RAISED = 6, 3  # of the transmission angle where pairs leave freedom, and fits that are refined
-EACH = 6  # starts under each that continue
-APART = 0.3  # of these, as `best_apart` has it
+HALVINGS, RAISED = 6, 3  # of the transmission angle where freedom is left, and fits that are refined
+EACH = 6  # starts that continue under each triangle
+APART = 0.3  # distance between them, as in `best_apart`
 # Triangles that are tried for pairs that are met, by their number, and the effort of each.
 TRIED = {3: (48, 0.02), 4: (36, 0.03), 5: (400, 1.0)}
 KEPT = 12  # of the most promising linkages under each triangle
-ZOOMED, ZOOMS = 8, 2  # of the best about which others are tried, and rounds of that
+ZOOMED, ZOOMS = 8, 2  # best triangles around which others are tried, and number of such rounds
 
 
 def through_by_cylinder(

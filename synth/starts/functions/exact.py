@@ -1,4 +1,4 @@
-"""Function generators through all pairs, the most promising ones."""
+"""The most promising function generators through all pairs."""
 
 from __future__ import annotations
 

@@ -22,12 +22,12 @@ from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import raise_if_overdue
 
 SPREAD = 121, 241  # of the first look: logarithms of r2 over r1, and driver angles in the mirrored position
-FINE, LAST = 201, 4  # samples of the range in the last rounds, and the number of these
+FINE, LAST = 201, 4  # samples of the range in the last rounds, and the number of these rounds
 ZOOM, ROUNDS, CLOSER = 17, 14, 0.25  # numbers tried at a time, rounds, and the share that each keeps
-REACH, STEEP, SAME = 0.15, 8.0, 1e-11  # about a place: both numbers, angle over ratio, and rad that are equal
-BASINS = 4  # lowest places that are looked at closely
+REACH, STEEP, SAME = 0.15, 8.0, 1e-11  # around a place: both numbers, angle over ratio; rad that end it
+BASINS = 4  # number of lowest places that are refined
 FEW = 2  # of them at a transmission angle, of which the best counts
-PRICE = 10.0  # rad: of a limit missed by one
+PRICE = 10.0  # rad: price of a limit missed by 1
 NONE = "no mirrored four-bar was found that closes over the range and keeps the limits"
 
 
@@ -39,7 +39,7 @@ class Mirrored:
     """
 
     search: Optima
-    desired: DesiredOutput = field(init=False)  # what is compared, and last the mirrored position
+    desired: DesiredOutput = field(init=False)  # the compared samples, and last the mirrored position
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "desired", self._desired(SAMPLES))
@@ -73,7 +73,7 @@ class Mirrored:
         )
 
     def scores(self, places: FloatArray, desired: DesiredOutput) -> tuple[FloatArray, FloatArray]:
-        """Errors of places (M, 2), infinite where the loop opens, and the miss of the worst limit."""
+        """Errors of places (M, 2), infinite where the loop is open, and the miss of the worst limit."""
         batch = self.made(places)
         with np.errstate(all="ignore"):
             order = np.argsort(desired.turned, kind="stable")
@@ -89,7 +89,7 @@ class Mirrored:
         return np.nan_to_num(error, nan=np.inf), np.nan_to_num(missed, nan=np.inf)
 
     def worth(self, places: FloatArray, desired: DesiredOutput) -> FloatArray:
-        """Errors with the price of what is missed; less is better."""
+        """Errors with the price of missed limits; less is better."""
         error, missed = self.scores(places, desired)
         worth: FloatArray = error + PRICE * np.where(missed > ROUNDING / 2, missed, 0.0)
         return worth

@@ -65,7 +65,7 @@ class Pairs:
 
     @classmethod
     def of(cls, aims: FunctionAims, sense: int, driver: int) -> Pairs:
-        """Those of a task in its senses of output and driver."""
+        """The pairs of a task in its senses of output and driver."""
         desired = aims.pairs(sense)
         turned, output = desired.turned - desired.turned[0], desired.output - desired.output[0]
         return cls(aims, sense, aims.limits_of(driver, sense), desired, turned, output)

@@ -1,4 +1,4 @@
-"""Where a cylinder of a known triangle stands: its base within its box, its pivot on link 2."""
+"""Placing of a cylinder with a known triangle: its base within its box, its pivot on link 2."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grashof.synth.theory.functions.by_cylinder import ByCylinder
 from grashof.synth.theory.functions.triangle import opening
 
 _AROUND = 720  # directions of the base that are tried
-_NEAR = 1e-7  # share of the distance by which a corner may be off the circle, as limits that are equal may
+_NEAR = 1e-7  # share of the distance by which a corner may be off the circle, as equal limits may
 
 
 def distances(o2: tuple[float, float], base: Box) -> Limits:
@@ -28,8 +28,8 @@ def placed_cylinder(
 ) -> Cylinder | None:
     """The cylinder of one generator on its linkage, O2 as that has it; None where no base suits.
 
-    `direction` is that from which driver angles count, rad. Any base at its distance will do, since the pivot
-    turns with it; best is the one whose arm points to A.
+    `direction` is that from which driver angles count, rad. Any base at its distance is possible, since the
+    pivot turns with it; the best is the one whose arm points to A.
     """
     far, arm, length = (each.item() for each in batch.triangle)
     opened = driver * float(opening(np.array(far), np.array(arm), np.array(length)))

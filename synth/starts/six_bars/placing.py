@@ -52,7 +52,7 @@ def _scales(wanted: Requirements, lengths: Mapping[str, float], reached: Complex
 
 
 def _inside(box: Box, near: complex) -> complex:
-    """The middle of a box, of a region the place nearest to it.
+    """The middle of a box; for a region the place nearest to it.
 
     Along an axis on which a box is open, the place in it nearest to another.
     """

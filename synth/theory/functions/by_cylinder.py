@@ -42,7 +42,7 @@ class ByCylinder(Generators):
 
     @classmethod
     def of(cls, batch: Generators, triangles: FloatArray) -> Self:
-        """Generators (M,) with a triangle each, or all with the same, (M, 3) or (3,), in logarithms."""
+        """Generators (M,) with a triangle each, or one for all, (M, 3) or (3,), in logarithms."""
         logs = np.broadcast_to(triangles, (len(batch), _OF_TRIANGLE))
         return cls(np.column_stack([batch.shape[:, :-1], logs, batch.shape[:, -1]]), batch.assembly)
 

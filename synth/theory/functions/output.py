@@ -1,4 +1,4 @@
-"""Function generators of any kind: their outputs along a rotation of the driver, or of what turns it.
+"""Function generators of any kind: their outputs over a rotation of the driver, or a cylinder's length.
 
 The driver turns counter-clockwise. A kind is a class, a file each: `grashof.synth.theory.functions.four_bar`,
 `slider_crank` and `inverted`. All else of the search goes through `Generators`.

@@ -12,7 +12,7 @@ from grashof.synth.theory.functions.limits import joined_rows
 
 LEAST_LEVER = float(np.radians(2.0))  # least angle between cylinder and arm, where none is required
 _LONG, _FAR = 8.0, 3.0  # where limits leave them free: first length over the least, base and arm over that
-_TRIES = 20  # triangles that are tried for each wanted
+_TRIES = 20  # triangles that are tried for each one wanted
 _BATCHES = 30
 
 
@@ -54,7 +54,7 @@ class TriangleLimits:
     base: Limits
     closed: Limits  # as far as the ratio of lengths allows
     lever: float  # rad, least angle between cylinder and arm
-    ratio: float  # greatest one of base and arm, either way
+    ratio: float  # greatest ratio of base and arm, either way
     unit: float  # of the lengths of the linkage: r1, or the travel
 
     def reach(self, logs: FloatArray) -> float:

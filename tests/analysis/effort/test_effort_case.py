@@ -33,7 +33,7 @@ def at(link: int | str, u: float, v: float) -> EffortPlace:
 
 
 def case_of(linkage: Linkage, *, metre: float = 1e-2, **given: object) -> EffortCase:
-    """Gravity, a gas strut pair, a spring that pulls and a coil, over a part of the driver's range."""
+    """Gravity, two gas struts, a tension spring and a torsion spring, over a part of the driver's range."""
     parts = (
         PartSpec("gas", (at(1, -3, -2.5), at(3, 0.5, 0.8)), (GAS,), count=2),
         PartSpec("tension", (at(2, 0.3, -0.2), at("body", 0.4, -0.7)), (PULL,)),
@@ -102,7 +102,7 @@ def test_a_coil_balances() -> None:
     case = case_of(ROCKER, parts=(coil,))
     places, state = effort_curves(case, 15)
     assert np.abs(torque_left(case, places, state, 1)).max() < 1e-9
-    assert (state.effort[0] == state.effort[2]).all()  # no gas, no temperature
+    assert (state.effort[0] == state.effort[2]).all()  # without gas, independent of temperature
 
 
 def test_gas_follows_the_absolute_temperature() -> None:
@@ -240,7 +240,7 @@ def test_a_coil_turned_too_far_and_angles_beyond_the_travel_are_named() -> None:
 
 
 def test_the_effort_is_the_same_in_every_unit() -> None:
-    """A linkage in centimetres and in metres; so are friction, and a coil's moment."""
+    """A linkage in centimetres and in metres, with friction and the moment of a torsion spring."""
 
     def in_metres(place: EffortPlace) -> EffortPlace:
         return place.placed(*(0.01 * x for x in place.point))

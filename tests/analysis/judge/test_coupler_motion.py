@@ -35,7 +35,7 @@ RANGES = {"leg": (LEG, 0.3, 2.4), "press": (PRESS, 0.4, 3.0), "shaper": (SHAPER,
 
 
 def direction(linkage: Linkage, theta2: FloatArray) -> FloatArray:
-    """Of link 3, unwrapped, by the triangle that it makes with the ground."""
+    """Direction of link 3, unwrapped, by the triangle that it forms with the ground."""
     a: Any = complex(*linkage.o2) + float(linkage.r2) * np.exp(1j * theta2)
     if isinstance(linkage, FourBar):
         way = complex(*linkage.o4) - a

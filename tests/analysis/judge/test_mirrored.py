@@ -1,4 +1,4 @@
-"""Linkages that are their own mirror image: the judge places them, and names those that are not."""
+"""Linkages that are their own mirror image: the judge places them, and reports those that are not."""
 
 from typing import Any
 

@@ -287,7 +287,7 @@ def test_two_intervals_of_one_circuit() -> None:
 
 
 def test_a_driver_of_half_a_turn() -> None:
-    """r1^2 + r2^2 = (r3 + r4)^2: the diagonal is longest where the driver is square to the ground."""
+    """r1^2 + r2^2 = (r3 + r4)^2: the diagonal is longest where the driver is perpendicular to the ground."""
     linkage = SixBar((0, 0), (3, 0), 4, 2.5, 2.5, c=(1, 0), d=(9, 0), r5=9, r6=6, hosts=(3, 1))
     np.testing.assert_allclose(driver_ranges(linkage)[0], [-np.pi / 2, np.pi / 2], atol=1e-12)
     assert not full_rotation(linkage)

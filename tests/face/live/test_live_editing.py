@@ -44,14 +44,14 @@ def wanted(page: Page) -> dict[str, Any]:
 
 
 def warned(page: Page, line: str) -> None:
-    """Waits for an error with this text; for none without it."""
+    """Wait for an error with this text; without a text, for no error."""
     shown = "document.querySelector('[data-warning]').textContent"
     page.wait_for_function(f"() => {f'{shown}.includes({line!r})' if line else f'!{shown}'}", timeout=200_000)
 
 
 @pytest.fixture
 def page(window: Page, served: str) -> Iterator[Page]:
-    """A fresh page, whose search may go on; nothing may have been complained of."""
+    """A new page, whose search may continue; without errors."""
     with without_complaints(window):
         window.goto("about:blank")
         window.goto(served)

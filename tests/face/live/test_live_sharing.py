@@ -1,4 +1,4 @@
-"""Links and texts that the live page copies, opened in another page."""
+"""Links and texts copied by the live page, opened in another page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Links of designs: read back to the last bit, however a mail treats them; damaged ones refused in a line."""
+"""Links of designs: read back to the last bit after any mail program; damaged ones refused in a line."""
 
 from __future__ import annotations
 

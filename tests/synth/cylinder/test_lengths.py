@@ -13,7 +13,7 @@ from grashof.synth.search.plain import plain, restored
 
 
 def angles_at(jack: Cylinder, linkage: FourBar, theta2: float, lengths: FloatArray) -> FloatArray:
-    """theta2 at which the pivot on link 2 is so far from the base: two circles meet in it."""
+    """theta2 at which the pivot on link 2 is at a distance from the base: two circles meet in it."""
     out = complex(*jack.base) - complex(*linkage.o2)
     far, arm = abs(out), abs(complex(*jack.point))
     along = (far**2 + arm**2 - lengths**2) / (2 * far)

@@ -38,7 +38,7 @@ def case_of(*parts: PartSpec, **wanted: Any) -> EffortCase:
 
 
 def excess(case: EffortCase, effort: EffortSpec | None) -> float:
-    """The greatest excess of placed parts by the judge, who finds no other fault."""
+    """The greatest excess of placed parts by the judge, without other misses."""
     assert effort is not None
     assert effort.is_placed
     figures = effort_figures(replace(case, dynamics=replace(case.dynamics, effort=effort)))

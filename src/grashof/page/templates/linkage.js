@@ -66,7 +66,7 @@ function pointAt(linkage, number, point, state) {
   return carried({ at: state[links[number].points[0]], along: [Math.cos(angle), Math.sin(angle)] }, point);
 }
 
-// Where the body of a cylinder or strut ends, which is that long, on its way from one pivot to the other.
+// The end of the body of a cylinder or strut, of this length, on the line from one pivot to the other.
 function bodyEnd(from, to, long) {
   const share = Math.min(long / (Math.hypot(to[0] - from[0], to[1] - from[1]) || 1), 1);
   return from.map((place, k) => place + share * (to[k] - place));

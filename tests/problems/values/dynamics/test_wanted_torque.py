@@ -1,4 +1,4 @@
-"""Wanted torques: bad ones are refused in a line, good ones come back from a file."""
+"""Wanted torques: invalid ones are refused in a line, valid ones are read back from a file."""
 
 import numpy as np
 import pytest

@@ -92,7 +92,7 @@ def test_derivatives_are_those_of_differences(row: Mechanism, motion: str) -> No
 
 
 def ways(batch: Batch) -> FloatArray:
-    """Directions that no error in a derivative is square to."""
+    """Directions that no error in a derivative is perpendicular to."""
     drawn = np.random.default_rng(4).normal(size=(2, batch.unknowns.shape[1]))
     return np.asarray(drawn / np.linalg.norm(drawn, axis=1, keepdims=True))
 

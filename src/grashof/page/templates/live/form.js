@@ -135,7 +135,7 @@ class Form {
     return { low: power / 10, high: Math.max(high, this.limitOf(key) ?? 0), off: high, step: power / 20 };
   }
 
-  // The task as it is; what is being typed stays, but not in another task.
+  // The current task; unfinished input stays, except in another task.
   show({ opened = false } = {}) {
     const { task, root } = this;
     const { document } = task;
@@ -165,7 +165,7 @@ class Form {
     closed.checked = Boolean((document.path || {}).closed);
   }
 
-  // The task as its file and in words, as it is valid.
+  // The valid task as its file and its summary.
   showFile(text, asked) {
     $("[data-file]", this.root).textContent = text;
     $("[data-asked]", this.root).replaceChildren(

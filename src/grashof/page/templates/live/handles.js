@@ -31,7 +31,7 @@ class Handles {
     this.onFocus(this.chosen());
   }
 
-  // The handle that keys and the button to remove concern.
+  // The handle for keys and for *Remove*.
   chosen() {
     return (this.focused && this.list().find(({ name }) => name === this.focused)) || null;
   }
@@ -165,7 +165,7 @@ class Handles {
       task.begin();
       if (handle.becomes) this.grow(handle);
     } else if (this.mode === "draw") {
-      stage.hold(); // designs that are found meanwhile do not change the scale
+      stage.hold(); // new designs do not change the scale meanwhile
       this.line = [place];
     } else if (this.mode === "add") {
       stage.hold();
@@ -175,7 +175,7 @@ class Handles {
     this.taken(event);
   }
 
-  // A side becomes two, with a corner that the hand holds from now on.
+  // Splits a side at a new corner, which is dragged from now on.
   grow(handle, place = handle.at) {
     this.focused = handle.becomes;
     this.task.change(() => handle.move(this.rounded(place)));
@@ -213,7 +213,7 @@ class Handles {
     this.setMode("move");
   }
 
-  // Joints of a place to come; those on the body only where it has a frame.
+  // Joints of a new place; those on the body only where it has a frame.
   offerJoints(select) {
     for (const option of select.options) option.hidden = option.value.endsWith("_on_body") && !frameOfBody(this.task);
     if (select.selectedOptions[0].hidden) select.value = select.options[0].value;
@@ -258,7 +258,7 @@ class Handles {
     });
   }
 
-  // The hand lets go, or the browser takes the pointer from it, which leaves a drawn line unused.
+  // The pointer is released, or cancelled by the browser, which discards a drawn line.
   up(done) {
     this.pointer = null;
     if (this.held) {

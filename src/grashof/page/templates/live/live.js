@@ -42,7 +42,7 @@ class Live extends MovingPage {
       this.given = given;
       this.task.open(document, name);
     } catch (error) {
-      // What cannot be opened leaves the page as it is, or with the task of the server.
+      // An error leaves the page unchanged, or with the task of the server.
       if (error.lines && !this.task.kind && Object.keys(wanted).length) await this.open({});
       this.failed(error, () => this.open(wanted));
     }
@@ -143,7 +143,7 @@ class Live extends MovingPage {
     else if (line.kind === "list") this.list(line, version);
   }
 
-  // The task is valid: its file, and what it asks for in words.
+  // The task is valid: its file and its summary.
   stated({ text, asked }, version) {
     if (version !== this.version) return;
     if (version !== this.refusedAt) this.warn([]);
@@ -300,7 +300,7 @@ class Live extends MovingPage {
     node.hidden = !words;
   }
 
-  // Lines of an error, until another task is valid.
+  // Lines of an error, shown until a task is valid.
   warn(lines) {
     const node = $("[data-warning]", this.root);
     this.refusedAt = lines.length ? this.version : null;

@@ -1,15 +1,15 @@
-// Where joints may be, as the problem file states it: points, boxes, polygons, segments; drawn, and their handles.
-const PIVOTS = ["o2", "o4", "d", "a", "b"]; // as in `regions.py`; those that are the same are one place
+// Regions of joints, as the problem file states them: points, boxes, polygons, segments; their drawings and handles.
+const PIVOTS = ["o2", "o4", "d", "a", "b"]; // as in `regions.py`; equal ones are one place
 const AT_TARGETS = { a: "A", b: "B", instant_centre: "instant centre" };
 const SHORTEST = 34; // px: the side of a polygon that offers a new corner
 
 // The frame of most places, that of the task.
 const STILL = { out: (place) => place, back: (place) => place };
 
-// A place on the drawing as the file has it, as fine as other places there.
+// A place on the drawing as the file has it, rounded like other places there.
 const inFrame = (frame, place, rounded) => (frame === STILL ? place : rounded(frame.back(place)));
 
-// The frame of places on the body, which stands at the first pose; null where that is incomplete.
+// The frame of places on the body, at the first pose; null where that is incomplete.
 function frameOfBody(task) {
   const { x, y, angle } = task.targets[0] || {};
   if (task.kind !== "motion" || [x, y, angle].includes(null)) return null;
@@ -103,7 +103,7 @@ function sceneOf(task, published) {
 }
 
 // Handles of corners, and of the middles of sides, where a new corner begins. `put` writes the changed corners into
-// the file, in the frame of the place; `remove` takes all of it away, where too few corners would be left.
+// the file, in the frame of the place; `remove` deletes the place where too few corners would be left.
 function cornerHandles({ words, corners: given, closed, fewest, frame = STILL, put, remove, grows = true }, stage, rounded) {
   const repeats = closed && given.length > fewest && String(given[0]) === String(given.at(-1));
   const corners = repeats ? given.slice(0, -1) : given;
@@ -156,7 +156,7 @@ function placeHandles({ words, value, entries, frame }, stage, rounded) {
   const sides = sidesOf(value);
   const open = sides.map(([low]) => low === null);
   if ((open[0] && open[1]) || (frame !== STILL && (open[0] || open[1]))) return [];
-  // A side does not pass the other one.
+  // A side stops at the opposite one.
   const moved = (place, ...ends) => {
     const box = structuredClone(value);
     ends.forEach((end, axis) => {

@@ -33,7 +33,7 @@ class Sharing {
     $("output", this.panel).textContent = `${COPIED[what]} ${copied ? "is copied" : "can be copied from here"}`;
   }
 
-  // Whether the clipboard has the text: some browsers and notebooks refuse the newer way, some the older.
+  // Whether the clipboard has the text: some browsers and notebooks refuse the newer method, some the older.
   async copied(text) {
     try {
       await navigator.clipboard.writeText(text);

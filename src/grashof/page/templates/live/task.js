@@ -127,7 +127,7 @@ class Task {
     return place;
   }
 
-  // A path in place of the targets there are. Another kind of task becomes one, with what all kinds may ask for.
+  // A path in place of the present targets. Another kind of task becomes one, with the requirements of all kinds.
   setPath(points, closed) {
     const { document } = this;
     if (this.kind !== "path") {
@@ -195,5 +195,5 @@ function resampled(line, count) {
   });
 }
 
-// Points that differ from the one before: those of a coarse grid may be the same.
+// Points that differ from the one before: on a coarse grid neighbours may be equal.
 const withoutRepeats = (points) => points.filter((point, k) => k === 0 || String(point) !== String(points[k - 1]));
