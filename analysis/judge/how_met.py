@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -14,7 +14,7 @@ from grashof.analysis.judge.meeting.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.meeting.function_start import off_mirror
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
-from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion, task_motions
 from grashof.analysis.judge.meeting.two_outputs import TwoOutputs, two_outputs
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index
@@ -35,6 +35,7 @@ from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.tandem_task import LINKS
 
 Driven: TypeAlias = Cylinder | None  # the cylinder that drives the linkage
+Members: TypeAlias = Sequence[Linkage]
 MIRRORED = 1e-9  # sizes: allowed distance of B from the mirror image of A
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
@@ -57,18 +58,23 @@ class Met:
     defects: tuple[Defect, ...] = ()
 
 
-def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
-    """Driver angle, assembly and error at each target, and the motion, of the least weighted squares.
+HowMet: TypeAlias = Callable[[Members, Linkage, Any, Requirements, Sequence[Driven]], list[Met]]
+
+
+def meet(
+    members: Members, batch: Linkage, task: Task, wanted: Requirements
+) -> list[tuple[Targets, TaskMotion]]:
+    """Of each linkage, driver angle, assembly and error at each target, and the motion, of least squares.
 
     With `order` in sequence in either sense within one turn, otherwise each by itself; with `same_branch`
     points keep to the own assembly and one range; of equal motions the shortest. Points and timed targets
     begin at `theta2_start_deg`, where it is given.
     """
     if task.is_timed or task.only_points:
-        targets, motion = _points_or_timed(linkage, task, wanted)
+        found = [_points_or_timed(linkage, task, wanted) for linkage in members]
     else:
-        targets, motion = _poses(linkage, task, wanted)
-    return targets, motion.closed() if task.closed else motion
+        found = list(_poses(members, batch, task, wanted))
+    return [(targets, motion.closed() if task.closed else motion) for targets, motion in found]
 
 
 def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
@@ -82,20 +88,33 @@ def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tupl
     return Targets.of(linkage, task, theta2, assembly), motion
 
 
-def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
-    targets = nearest_to_poses(linkage, task)
-    motion = task_motion(linkage, targets.theta2, wanted.order)
-    once = len(linkage.mechanism.loops) == 1  # it stands in a pose at a single driver angle
-    if wanted.order and not (wanted.is_exact(task) and task.is_whole and once):
-        branch = branch_index(linkage, targets.theta2, targets.assembly)
-        joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
-        if not motion.in_order or (wanted.same_branch and not joined):
-            return poses_in_order(linkage, task, targets, motion)
-    return targets, motion
+def _poses(
+    members: Members, batch: Linkage, task: Task, wanted: Requirements
+) -> Iterator[tuple[Targets, TaskMotion]]:
+    nearest = nearest_to_poses(batch, task)
+    motions = task_motions(batch, nearest.theta2, wanted.order)
+    once = len(batch.mechanism.loops) == 1  # it stands in a pose at a single driver angle
+    if not wanted.order or (wanted.is_exact(task) and task.is_whole and once):
+        yield from ((nearest[row], motion) for row, motion in enumerate(motions))
+        return
+    branch = branch_index(batch[:, None], nearest.theta2, nearest.assembly)
+    joined = (branch == branch[:, :1]).all(axis=1) & (nearest.assembly[:, 0] == batch.assembly)
+    for row, (linkage, motion) in enumerate(zip(members, motions, strict=True)):
+        if motion.in_order and (joined[row] or not wanted.same_branch):
+            yield nearest[row], motion
+        else:
+            yield poses_in_order(linkage, task, nearest[row], motion)
 
 
-def _in_plane(linkage: Linkage, task: Task, wanted: Requirements, _: Driven = None) -> Met:
-    targets, motion = meet(linkage, task, wanted)
+def _in_plane(
+    members: Members, batch: Linkage, task: Task, wanted: Requirements, _: Sequence[Driven]
+) -> list[Met]:
+    found = meet(members, batch, task, wanted)
+    return [_limited_in_length(*each, task) for each in zip(members, found, strict=True)]
+
+
+def _limited_in_length(linkage: Linkage, met: tuple[Targets, TaskMotion], task: Task) -> Met:
+    targets, motion = met
     most = task.most_length_ratio(linkage.mechanism)
     if not np.isfinite(most):
         return Met(targets, motion, targets.theta2, targets.assembly)
@@ -240,10 +259,22 @@ def _dwell_defects(found: DwellFigures | None, task: DwellTask, slides: bool) ->
         yield Defect(key, f"the output band in the dwell{deg}", found.band * unit, allowed, miss)
 
 
-HOW_MET: Mapping[type, Callable[[Linkage, Any, Requirements, Driven], Met]] = {
+def _singly(how: Callable[[Linkage, Any, Requirements, Driven], Met]) -> HowMet:
+    """How the linkages of a batch meet a task, by a function of each."""
+
+    def met(
+        members: Members, _: Linkage, task: Any, wanted: Requirements, driven: Sequence[Driven]
+    ) -> list[Met]:
+        return [how(linkage, task, wanted, by) for linkage, by in zip(members, driven, strict=True)]
+
+    return met
+
+
+#: Of linkages of one kind, one by one and as a batch (B,), with the cylinders that drive them.
+HOW_MET: Mapping[type, HowMet] = {
     Task: _in_plane,
-    FunctionTask: _as_function,
-    StrokeTask: _between_limits,
-    DwellTask: _standing_still,
-    TandemTask: _in_tandem,
+    FunctionTask: _singly(_as_function),
+    StrokeTask: _singly(_between_limits),
+    DwellTask: _singly(_standing_still),
+    TandemTask: _singly(_in_tandem),
 }

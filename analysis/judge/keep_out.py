@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias, cast
 
@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.position import places, solve_position
 from grashof.problems import Linkage, Requirements, Task
@@ -78,6 +79,14 @@ def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 
     ends = shapely.get_coordinates(part[lines]).reshape(-1, 2, 2) @ np.array([1, 1j])
     np.maximum.at(deepest, long[crossing][index[lines]], _deepest_along(area, ends, rounds))
     return deepest
+
+
+def parts_inside(
+    linkage: Linkage, task: Task, wanted: Requirements, targets: Targets, motion: TaskMotion, *, joined: bool
+) -> Iterator[Defect]:
+    """A defect for each part that lies in an area kept out."""
+    for part, deep in intrusions(linkage, task, wanted, targets, motion, joined=joined).items():
+        yield Defect("keep_out", f"the depth of {part} inside", deep, "0", deep / task.size)
 
 
 def intrusions(

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.regions import defects_outside
 from grashof.analysis.judge.verdict import Defect
-from grashof.problems import Problem, ProblemError, Requirements
+from grashof.problems import Problem, ProblemError, Region, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
 from grashof.problems.values.requirements.limit_kinds import Kind, Limit
 from grashof.problems.values.requirements.quantities import Needs, Quantity, Scope
@@ -20,40 +21,62 @@ SLACK = 1e-9
 _OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
 
 
-def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
-    """A defect for every limit of resolved requirements missed, in order of fields.
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """A stated limit, with the quantity that it limits and the ranges, or the region, that it allows."""
 
-    The worst target on either side. ProblemError for a quantity that needs more than the problem states.
+    name: str
+    limit: Limit
+    quantity: Quantity
+    ranges: Mapping[str, Limits]
+    region: Region | None
+
+
+def stated_limits(problem: Problem, wanted: Requirements, kind: str) -> list[Stated]:
+    """The limits of resolved requirements for a kind of linkage, in order of fields.
+
+    ProblemError for a quantity that needs more than the problem states.
     """
-    limited, verdict = wanted.limited, values.verdict  # another defect says that no motion joins the targets
-    joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
-    for name, limit in limited.items():
-        if values.linkage.mechanism.word not in limit.quantity.kinds:  # of a list of several kinds
+    found, regions = list[Stated](), wanted.regions
+    for name, limit in wanted.limited.items():
+        # Of a list of several kinds; a default.
+        if kind not in limit.quantity.kinds or limit.quantity.key in problem.task.without:
             continue
-        if limit.quantity.key in values.problem.task.without:  # a default
-            continue
-        if not values.problem.states(limit.quantity.needs):
+        if not problem.states(limit.quantity.needs):
             raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
+        quantity = wanted.as_required(limit.quantity)
+        found.append(Stated(name, limit, quantity, wanted.ranges(name), regions.get(name)))
+    return found
+
+
+def missed(values: Values, stated: Sequence[Stated], same_branch: bool) -> Iterator[Defect]:
+    """A defect for every limit missed, in their order, by the worst target on either side."""
+    verdict = values.verdict  # another defect says that no motion joins the targets
+    joined = verdict.branch_ok or verdict.cylinder is not None or not same_branch
+    names = {each.name for each in stated}
+    for each in stated:
+        quantity, limit = each.quantity, each.limit
         if limit.quantity.over is Scope.TASK and not joined:
             continue
         if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
             continue  # that there is none is a defect by itself
-        quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
-        if (region := wanted.regions.get(name)) is not None:
-            yield from defects_outside(name, region, limit, values.parts(quantity.key), values.problem)
+        parts = values.parts(quantity.key)
+        if each.region is not None:
+            yield from defects_outside(each.name, each.region, limit, parts, values.problem)
             continue
-        for part, numbers in values.parts(quantity.key).items():
+        for part, numbers in parts.items():
             # r1 has limits of its own besides link_length, a ratio may have none
-            if part in limited or not {part, ""} & set(ranges):
+            allowed = each.ranges.get(part, each.ranges.get(""))
+            if part in names or allowed is None:
                 continue
-            allowed = ranges[part if part in ranges else ""]
             if limit.kind is Kind.HEADING:
                 numbers = lifted(numbers, allowed)
-            for value in np.unique([numbers.min(), numbers.max()]).tolist():
+            low, high = float(numbers.min()), float(numbers.max())
+            for value in (low, high) if low < high else (high,):
                 miss = _miss(value, allowed, limit, values.problem)
                 if miss > SLACK:
                     found = value * quantity.unit.shown
-                    yield Defect(name, _what(quantity, part), found, limit.range_text(allowed), miss)
+                    yield Defect(each.name, _what(quantity, part), found, limit.range_text(allowed), miss)
 
 
 def lifted(angles: FloatArray, allowed: Limits) -> FloatArray:
@@ -69,6 +92,8 @@ def lifted(angles: FloatArray, allowed: Limits) -> FloatArray:
 def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:
     """Excess of a value over its limits: in rad, as a share of the limit of a ratio, or in scales."""
     low, high = allowed
+    if low <= value <= high:
+        return 0.0
     if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
         return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf
     if limit.kind.is_angle:

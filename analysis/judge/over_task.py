@@ -11,9 +11,9 @@ import numpy as np
 
 from grashof.analysis.curves.fit import coupler_fit_r2
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.from_spec import BeyondLoadError, stated_loads, stated_masses
+from grashof.analysis.forces.from_spec import TRAVEL_ROUNDING, BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.forces.joints import joints_of
-from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers, mean_in_time
 from grashof.analysis.mechanism.even_motion import close_samples
 from grashof.analysis.mechanism.kinematics import solve_kinematics
@@ -246,3 +246,30 @@ def _together(some: Sequence[_Motion]) -> tuple[Linkage, DriverLaw | SteadyDrive
     most = max(len(each.theta2) for each in some)
     rows = [np.pad(each.theta2, (0, most - len(each.theta2)), mode="edge") for each in some]
     return batch, SteadyDrivers(start, omega2), [np.stack(rows)]
+
+
+def uncovered_loads(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Defect]:
+    """Loads over the travel of a slide that do not cover all of it."""
+    loads = () if problem.dynamics is None else problem.dynamics.loads
+    over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
+    if not over or not linkage.mechanism.slides:
+        return
+    linkage = as_used(linkage, verdict)
+    theta2 = sampled(linkage, *motion_ends(problem.task, verdict))
+    if not joins(linkage, verdict, theta2):
+        return
+
+    def travels(angles: FloatArray) -> FloatArray:
+        travel = solve_position(linkage, angles).travel
+        return np.stack([travel, -travel])
+
+    high, low = peaks(travels, [theta2])[0] * [1.0, -1.0]
+    for index, rows in over.items():
+        least, most = rows[0][0], rows[-1][0]
+        slack = TRAVEL_ROUNDING * max(abs(least), abs(most))
+        for found, miss in ((low, least - low), (high, high - most)):
+            if miss > slack:
+                what = f"the travel of the slide under loads[{index}]"
+                yield Defect(
+                    "loads", what, float(found), f"{least:g} to {most:g}", float(miss / problem.task.size)
+                )

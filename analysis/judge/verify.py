@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis.forces.from_spec import TRAVEL_ROUNDING
 from grashof.analysis.judge.at_targets import missed_at_targets
 from grashof.analysis.judge.cylinder_drive import cylinder_defects, cylinder_travel
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
-from grashof.analysis.judge.how_met import HOW_MET
+from grashof.analysis.judge.how_met import HOW_MET, Met
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
-from grashof.analysis.judge.missed_limits import SLACK, missed
-from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
+from grashof.analysis.judge.missed_limits import SLACK, missed, stated_limits
+from grashof.analysis.judge.over_task import uncovered_loads
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.wanted_torque import torque_misses
 from grashof.analysis.mechanism.extremes import diagonal, reach_box
@@ -28,14 +27,15 @@ from grashof.analysis.mechanism.mobility import (
     passes_change_point,
     rotatability,
 )
-from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.second_loop import cut
 from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
-from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage, Problem, Requirements, Rotatability, Task, WantedTorque
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
+from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.tasks.task import row_of
+
+_AT_ONCE = 64  # linkages whose arrays fit well into a cache
 
 
 def verify(
@@ -82,60 +82,153 @@ def verify(
     >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
     (True, True)
     """
-    task = grounded(task, requirements)
-    wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
-    met = row_of(HOW_MET, task)(linkage, task, wanted, cylinder)
-    targets, motion = met.targets, met.motion
-    circuits = circuit_index(linkage, met.theta2, met.assembly)
-    branches = branch_index(linkage, met.theta2, met.assembly)
-    circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0) and met.covered
-    branch_ok = circuit_ok and bool((branches == branches[0]).all())
-    branch_ok = branch_ok and not passes_change_point(linkage, motion.start, motion.end)
-    # Without a motion that joins the targets nothing is transmitted.
-    task_worst = float(worst_transmission(linkage, motion.start, motion.end)) if branch_ok else 0.0
-    cycle_worst = float(worst_transmission_cycle(linkage))
-    verdict = Verdict(
-        theta2=motion.theta2,
-        assembly=targets.assembly,
-        position_error=targets.position_error,
-        angle_error=targets.angle_error,
-        square=_square(targets, task),
-        direction=motion.direction,
-        grashof_class=grashof_class(linkage),
-        full_rotation=bool(full_rotation(linkage)),
-        circuit_ok=circuit_ok,
-        branch_ok=branch_ok,
-        order_ok=motion.in_order,
-        transmission_min_task=task_worst,
-        transmission_min_cycle=cycle_worst,
-        size=diagonal(reach_box(linkage, motion.start, motion.end)),
-        defects=(),
-        cylinder=cylinder,
-        output_error=targets.output_error,
-        **met.figures,
-    )
-    if problem is not None and problem.torque is not None and problem.torque.weight:
-        verdict = replace(
-            verdict, square=verdict.square + _of_torque(linkage, problem, problem.torque, verdict)
+    asked = Asked(task, requirements, constraints, problem)
+    return asked.verdicts([Judged(linkage, most_square, cylinder)])[0]
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A linkage to be judged, with `most_square` and `cylinder` as of `verify`."""
+
+    linkage: Linkage
+    most_square: float = np.inf
+    cylinder: Cylinder | None = None
+
+
+class Asked:
+    """The requirements that linkages are judged by, as of `verify`."""
+
+    def __init__(
+        self,
+        task: Task,
+        requirements: Requirements,
+        constraints: Sequence[Constraint] = (),
+        problem: Problem | None = None,
+    ) -> None:
+        self.task = grounded(task, requirements)
+        wanted = requirements.for_task(self.task)
+        self.wanted = wanted.resolved(self.task.size, scale_free=self.task.scale_free)
+        self.constraints, self.problem = constraints, problem
+
+    def verdicts(self, designs: Sequence[Judged]) -> list[Verdict]:
+        """The verdicts on linkages, in their order; each to the last bit as on it alone."""
+        found: dict[int, Verdict] = {}
+        for alike in by_kind([each.linkage for each in designs]):
+            for begin in range(0, len(alike), _AT_ONCE):
+                rows = alike[begin : begin + _AT_ONCE]
+                found |= zip(rows, self._of_kind([designs[row] for row in rows]), strict=True)
+        return [found[row] for row in range(len(designs))]
+
+    def _of_kind(self, designs: Sequence[Judged]) -> Iterator[Verdict]:
+        """Verdicts on linkages of one kind."""
+        members = [each.linkage for each in designs]
+        batch = type(members[0]).stacked(members)
+        how = row_of(HOW_MET, self.task)
+        met = how(members, batch, self.task, self.wanted, [each.cylinder for each in designs])
+        moved = Moved.of(batch, met)
+        problem = self.problem or Problem(task=self.task, mechanism=batch.mechanism.word)
+        stated = stated_limits(problem, self.wanted, batch.mechanism.word)
+        for row, (design, one) in enumerate(zip(designs, met, strict=True)):
+            linkage, verdict = design.linkage, self._figures(design, one, moved, row)
+            defects = (
+                *self._of_targets(one, verdict, design.most_square),
+                *self._of_drive(linkage, one, verdict, moved.shares[row]),
+                *missed(Values(linkage, verdict, problem), stated, self.wanted.same_branch),
+                *self._beyond(linkage, one, verdict),
+            )
+            yield replace(verdict, defects=defects)
+
+    def _figures(self, design: Judged, met: Met, moved: Moved, row: int) -> Verdict:
+        """The verdict on a linkage, without its defects."""
+        targets, motion, problem = met.targets, met.motion, self.problem
+        verdict = Verdict(
+            theta2=motion.theta2,
+            assembly=targets.assembly,
+            position_error=targets.position_error,
+            angle_error=targets.angle_error,
+            square=_square(targets, self.task),
+            direction=motion.direction,
+            grashof_class=grashof_class(design.linkage),
+            full_rotation=bool(moved.turns[row]),
+            circuit_ok=bool(moved.circuit_ok[row]),
+            branch_ok=bool(moved.branch_ok[row]),
+            order_ok=motion.in_order,
+            # Without a motion that joins the targets nothing is transmitted.
+            transmission_min_task=float(moved.transmission_task[row]) if moved.branch_ok[row] else 0.0,
+            transmission_min_cycle=float(moved.transmission_cycle[row]),
+            size=float(moved.size[row]),
+            defects=(),
+            cylinder=design.cylinder,
+            output_error=targets.output_error,
+            **met.figures,
         )
-    drive = _drive(linkage, task, wanted, verdict, motion, problem)
-    defects = (
-        *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
-        *met.defects,
-        *_zones(targets, task),
-        *_total_error(verdict.square, task, most_square),
-        *drive,
-        *_rotatability(linkage, task, wanted),
-        *_covered(targets),
-        *(_loads(linkage, problem, verdict) if problem is not None else []),
-        *missed(
-            Values(linkage, verdict, problem or Problem(task=task, mechanism=linkage.mechanism.word)), wanted
-        ),
-        *(missed_at_targets(linkage, task, wanted, verdict) if wanted.at else []),
-        *(_own(Design.judged(linkage, verdict), constraints) if constraints else []),
-        *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),
-    )
-    return replace(verdict, defects=defects)
+        if problem is None or problem.torque is None or not problem.torque.weight:
+            return verdict
+        added = _of_torque(design.linkage, problem, problem.torque, verdict)
+        return replace(verdict, square=verdict.square + added)
+
+    def _of_targets(self, met: Met, verdict: Verdict, most_square: float) -> Iterator[Defect]:
+        """Defects of targets that are missed."""
+        task, wanted = self.task, self.wanted
+        if wanted.is_exact(task):
+            yield from _exactness(met.targets, task, wanted)
+        yield from met.defects
+        yield from _zones(met.targets, task)
+        yield from _total_error(verdict.square, task, most_square)
+
+    def _of_drive(self, linkage: Linkage, met: Met, verdict: Verdict, shares: FloatArray) -> Iterator[Defect]:
+        """Defects of the motion and of what drives it."""
+        yield from _drive(linkage, self.task, self.wanted, verdict, met.motion, self.problem)
+        yield from _rotatability(linkage, self.task, self.wanted, float(shares.min()))
+        yield from _covered(met.targets)
+        if self.problem is not None:
+            yield from uncovered_loads(linkage, self.problem, verdict)
+
+    def _beyond(self, linkage: Linkage, met: Met, verdict: Verdict) -> Iterator[Defect]:
+        """Defects at single targets, of the user's own constraints, and of areas kept out."""
+        if self.wanted.at:
+            yield from missed_at_targets(linkage, self.task, self.wanted, verdict)
+        if self.constraints:
+            yield from _own(Design.judged(linkage, verdict), self.constraints)
+        if self.wanted.keep_out:
+            # Here, not above: shapely takes a while to import, and few problems have areas.
+            from grashof.analysis.judge.keep_out import parts_inside
+
+            motions = met.targets, met.motion
+            yield from parts_inside(linkage, self.task, self.wanted, *motions, joined=verdict.branch_ok)
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """Figures of the motions of a batch of linkages, each of shape (B,); `shares` as of `rotatability`."""
+
+    circuit_ok: BoolArray
+    branch_ok: BoolArray
+    turns: BoolArray
+    transmission_task: FloatArray
+    transmission_cycle: FloatArray
+    size: FloatArray
+    shares: FloatArray
+
+    @classmethod
+    def of(cls, batch: Linkage, met: Sequence[Met]) -> Moved:
+        """The figures of a batch in the motions that meet the targets."""
+        start, end = np.array([(each.motion.start, each.motion.end) for each in met]).T
+        at = np.stack([each.theta2 for each in met]), np.stack([each.assembly for each in met])
+        circuits, branches = (index(batch[:, None], *at) for index in (circuit_index, branch_index))
+        circuit_ok = (circuits == circuits[:, :1]).all(axis=1) & (circuits[:, 0] >= 0)
+        circuit_ok &= [each.covered for each in met]
+        branch_ok = circuit_ok & (branches == branches[:, :1]).all(axis=1)
+        branch_ok &= ~passes_change_point(batch, start, end)
+        return cls(
+            circuit_ok,
+            branch_ok,
+            full_rotation(batch),
+            worst_transmission(batch, start, end),
+            worst_transmission_cycle(batch),
+            diagonal(reach_box(batch, start, end)),
+            rotatability(batch),
+        )
 
 
 def _square(targets: Targets, task: Task) -> float:
@@ -239,13 +332,13 @@ def _order(motion: TaskMotion) -> Iterator[Defect]:
         yield Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)
 
 
-def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
+def _rotatability(linkage: Linkage, task: Task, wanted: Requirements, least: float) -> Iterator[Defect]:
+    """The defects of a driver that does not turn as required; `least` is the margin of full rotation."""
     margin, why = wanted.rotatability_margin, str(wanted.rotatability)
     if wanted.rotatability is Rotatability.ANY:
         if not task.closed:
             return
         margin, why = 0.0, f"a closed {task.kind} takes a full turn"
-    least = float(rotatability(linkage).min())
     if least < margin - SLACK:
         allowed = f"from {margin:g} ({why})"
         yield Defect("rotatability", "the margin of full rotation", least, allowed, margin - least)
@@ -281,46 +374,7 @@ def _covered(targets: Targets) -> list[Defect]:
     return [Defect("rotatability", what, open_at, "0", 1.0)] if open_at else []
 
 
-def _loads(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Defect]:
-    """Loads over the travel of a slide that do not cover all of it."""
-    loads = () if problem.dynamics is None else problem.dynamics.loads
-    over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
-    if not over or not linkage.mechanism.slides:
-        return
-    linkage = as_used(linkage, verdict)
-    theta2 = sampled(linkage, *motion_ends(problem.task, verdict))
-    if not joins(linkage, verdict, theta2):
-        return
-
-    def travels(angles: FloatArray) -> FloatArray:
-        travel = solve_position(linkage, angles).travel
-        return np.stack([travel, -travel])
-
-    high, low = peaks(travels, [theta2])[0] * [1.0, -1.0]
-    for index, rows in over.items():
-        least, most = rows[0][0], rows[-1][0]
-        slack = TRAVEL_ROUNDING * max(abs(least), abs(most))
-        for found, miss in ((low, least - low), (high, high - most)):
-            if miss > slack:
-                what = f"the travel of the slide under loads[{index}]"
-                yield Defect(
-                    "loads", what, float(found), f"{least:g} to {most:g}", float(miss / problem.task.size)
-                )
-
-
 def _own(design: Design, constraints: Sequence[Constraint]) -> Iterator[Defect]:
     for constraint in constraints:
         if not (value := greatest(constraint, design)) <= SLACK:
             yield Defect("constraints", name_of(constraint), value, "up to 0", value)
-
-
-def _kept_out(
-    linkage: Linkage, targets: Targets, motion: TaskMotion, task: Task, wanted: Requirements, *, joined: bool
-) -> list[Defect]:
-    # Here, not above: shapely takes a while to import, and few problems have areas.
-    from grashof.analysis.judge.keep_out import intrusions
-
-    return [
-        Defect("keep_out", f"the depth of {part} inside", deep, "0", deep / task.size)
-        for part, deep in intrusions(linkage, task, wanted, targets, motion, joined=joined).items()
-    ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -134,21 +135,40 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
     >>> np.degrees(even_motion(nearly_dead, 0.0, np.pi).theta2([0, 0.25, 0.5, 0.75, 1])).round(3).tolist()
     [0.0, 3.126, 16.409, 74.602, 180.0]
     """
-    start, end = float(start), float(end)
     if len(linkage.mechanism.dyads) == 1:
-        return EvenMotion(start, end, first_motion(linkage, start, end))
-    found, (low, high) = cut(linkage), sorted((start, end))
-    motion = EvenMotion(start, end, FirstMotion(start, end))
-    for (least, most), dead in zip(found.ranges.tolist(), found.dead[..., 1].tolist(), strict=True):
+        return EvenMotion(float(start), float(end), first_motion(linkage, start, end))
+    found, (low, high) = cut(linkage), np.sort([start, end])
+    motion = EvenMotion(float(start), float(end), FirstMotion(*np.array([start, end], dtype=np.float64)))
+    for (least, most), dead in zip(found.ranges, found.dead[..., 1].tolist(), strict=True):
         turned = turns_into(least, most, low, high)
-        if most - least > TURN - SLACK or (turned is not None and not any(dead)):
+        if most - least > TURN - SLACK or (np.isfinite(turned) and not any(dead)):
             motion = replace(motion, first=first_motion(linkage, start, end))
-        elif turned is not None and most - least > SHORT:
+        elif np.isfinite(turned) and most - least > SHORT:
             first = first_motion(linkage, least + turned, most + turned)
             begin, finish = _unbent(first.share([start, end]), tuple(dead)).tolist()
-            motion = EvenMotion(start, end, first, tuple(dead), begin, finish)
+            motion = EvenMotion(motion.start, motion.end, first, tuple(dead), begin, finish)
     corners = motion.share(recurring(found.extremes, low, high))
     return replace(motion, corners=tuple(corners.tolist()))
+
+
+def angles_at_shares(
+    linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike
+) -> Callable[[FloatArray], FloatArray]:
+    """Driver angles at shares (..., N) of the even motions of linkages (...) between driver angles (...)."""
+    if len(linkage.mechanism.dyads) == 1:
+        return first_motion(linkage, start, end)[..., None].theta2
+    begins, ends = (np.broadcast_to(each, linkage.shape).astype(float) for each in (start, end))
+    motions = [
+        even_motion(linkage[at], begins[at].item(), ends[at].item()) for at in np.ndindex(linkage.shape)
+    ]
+
+    def angles(share: FloatArray) -> FloatArray:
+        shape = *np.broadcast_shapes(share.shape[:-1], linkage.shape), share.shape[-1]
+        flat = np.broadcast_to(share, shape).reshape(-1, len(motions), shape[-1])
+        found = [motion.theta2(flat[:, number]) for number, motion in enumerate(motions)]
+        return np.stack(found, axis=1).reshape(shape)
+
+    return angles
 
 
 def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 import scipy
 from numpy.polynomial import chebyshev
 
-from grashof.analysis.mechanism.even_motion import closer_at_ends, even_motion
+from grashof.analysis.mechanism.even_motion import angles_at_shares, closer_at_ends, even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.mobility import dead_ends, driver_ranges, full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import quality, transmission_at_extremes
-from grashof.analysis.numerics.peaks import Curve, greatest, own
+from grashof.analysis.numerics.peaks import Curve, greatest
 from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
@@ -264,18 +265,17 @@ def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[f
     return [float(found.x)]
 
 
-def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
+def reach_box(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike) -> FloatArray:
     """Box around the ground pivots and the paths of all moving points between two driver angles.
 
     Parameters
     ----------
     linkage : Linkage
-        A single linkage.
-    start, end : float, rad
+    start, end : array_like, shape (...), rad
 
     Returns
     -------
-    ndarray, shape (2, 2), length
+    ndarray, shape (..., 2, 2), length
         Lower left and upper right corner.
 
     Examples
@@ -285,25 +285,28 @@ def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
     >>> reach_box(crank_rocker, 0.0, 2 * np.pi).round(6).tolist()
     [[-1.0, -1.0], [4.0, 3.0]]
     """
-    motion = even_motion(linkage, start, end)
+    angles, many = angles_at_shares(linkage, start, end), linkage[..., None]
+    rows = [(name, axis) for name in linkage.mechanism.moving for axis in (0, 1)]
 
     def tracks(share: FloatArray) -> FloatArray:
-        """Coordinates of the moving points, and their negatives."""
-        state = solve_position(linkage, motion.theta2(share))
-        rows = np.concatenate(
-            [np.moveaxis(getattr(state, point), -1, 0) for point in linkage.mechanism.moving]
-        )
-        both = own(np.concatenate([rows, -rows]))
-        closed = own(np.broadcast_to(np.isfinite(rows.sum(axis=0)), (len(both), *state.theta2.shape)))
-        return np.where(closed, both, -np.inf)
+        """Coordinates of the moving points, and their negatives, each at its own shares."""
+        state, every = solve_position(many, angles(share)), range(2 * len(rows))
+        places = [state.point(name)[..., axis] for name, axis in rows]
+        closed = np.isfinite(np.sum(places, axis=0))
+        found = np.stack([places[row % len(rows)][row % len(share)] for row in every])
+        found[len(rows) :] *= -1
+        return np.where(closed, found, -np.inf)
 
-    shares = np.linspace(0, 1, _BOX_SAMPLES)
-    furthest = greatest(tracks, shares, most=2, rounds=_BOX_ROUNDS)[0].reshape(2, -1, 2)
-    corners = np.stack([getattr(linkage, pivot) for pivot in linkage.mechanism.ground])
-    most, least = np.where(np.isfinite(furthest), furthest, -np.inf)
-    return np.stack([np.min([*corners, *-least], axis=0), np.max([*corners, *most], axis=0)])
+    shares = np.broadcast_to(np.linspace(0, 1, _BOX_SAMPLES), (*linkage.shape, _BOX_SAMPLES))
+    found, _ = greatest(tracks, shares, most=2, rounds=_BOX_ROUNDS)
+    furthest = np.where(np.isfinite(found), found, -np.inf).reshape(2, -1, 2, *linkage.shape)
+    corners = np.stack([np.moveaxis(getattr(linkage, pivot), -1, 0) for pivot in linkage.mechanism.ground])
+    most = np.concatenate([corners, furthest[0]]).max(axis=0)
+    least = np.concatenate([corners, -furthest[1]]).min(axis=0)
+    return np.moveaxis(np.stack([least, most]), (0, 1), (-2, -1))
 
 
-def diagonal(box: FloatArray) -> float:
-    """Diagonal of a box of two corners, shape (2, 2)."""
-    return float(np.hypot(*(box[1] - box[0])))
+def diagonal(box: FloatArray) -> FloatArray:
+    """Diagonals of boxes of two corners, shape (..., 2, 2)."""
+    across = box[..., 1, :] - box[..., 0, :]
+    return np.asarray(np.hypot(across[..., 0], across[..., 1]))

@@ -4,7 +4,7 @@ Each kind has the same methods:
 
 - `span`: where the loop closes with the cosine of the transmission angle at most `cosine` in size.
 - `shares`: `rotatability`, shape (..., 2).
-- `even`: a and b of `first_motion`, 1 for one that is 0 (a change point); NaN where undefined.
+- `even`: a and b of `first_motion`, shape (...); 1 for one that is 0 (a change point), NaN where undefined.
 - `class_of`: the class of a single linkage.
 - `apart`: the length that the transmission angle depends on, at theta2 - theta1 = phi; `apart_on_line`: the
   same at phi = 0 and pi, where it is least and greatest.
@@ -105,15 +105,15 @@ class FourBarLoop(_DiagonalLoop):
         stretched, folded = r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4)
         return np.asarray(np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None])
 
-    def even(self) -> tuple[float, float]:
-        r1, r2, r3, r4 = map(float, self.linkage.lengths[:4])
-        if not r1 * r2 > 0:  # the ground pivots coincide: all links turn together
-            return np.nan, np.nan
-        stretched, folded = self.shares().tolist()
-        scale = (r1 + r2 + r3 + r4) / (4 * r1 * r2)
-        a = folded * scale * (abs(r1 - r2) + abs(r3 - r4)) if abs(folded) > CHANGE else 1.0
-        b = stretched * scale * (r1 + r2 + r3 + r4) if abs(stretched) > CHANGE else 1.0
-        return a, b
+    def even(self) -> tuple[FloatArray, FloatArray]:
+        r1, r2, r3, r4 = np.moveaxis(self.linkage.lengths[..., :4], -1, 0)
+        stretched, folded = np.moveaxis(self.shares(), -1, 0)
+        apart = r1 * r2 > 0  # otherwise the ground pivots coincide: all links turn together
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            scale = np.where(apart, (r1 + r2 + r3 + r4) / (4 * r1 * r2), np.nan)
+            a = folded * scale * (np.abs(r1 - r2) + np.abs(r3 - r4))
+            b = stretched * scale * (r1 + r2 + r3 + r4)
+        return _without_change(a, folded, apart), _without_change(b, stretched, apart)
 
     def class_of(self, tolerance: float) -> GrashofClass:
         """Shortest and longest compared with the others (Grashof 1883; Norton, sec. 2.13)."""
@@ -158,11 +158,9 @@ class SliderCrankLoop:
         room = r3 - r2
         return np.stack([room - offset, room + offset], axis=-1) / (r2 + r3 + np.abs(offset))[..., None]
 
-    def even(self) -> tuple[float, float]:
-        span, (stretched, folded) = self.span(), self.shares().tolist()
-        scale = 2 * float(self.linkage.r2)
-        a = float(span.a) / scale if abs(folded) > CHANGE else 1.0
-        return a, float(span.b) / scale if abs(stretched) > CHANGE else 1.0
+    def even(self) -> tuple[FloatArray, FloatArray]:
+        span, (stretched, folded), scale = self.span(), np.moveaxis(self.shares(), -1, 0), 2 * self.linkage.r2
+        return _without_change(span.a / scale, folded), _without_change(span.b / scale, stretched)
 
     def class_of(self, tolerance: float) -> GrashofClass:
         shares = self.shares()
@@ -207,15 +205,15 @@ class InvertedLoop(_DiagonalLoop):
         folded = (least - away) / (most + away)
         return np.stack([np.ones_like(folded), folded], axis=-1)
 
-    def even(self) -> tuple[float, float]:
-        least, most, away = map(float, self._diagonals())
+    def even(self) -> tuple[FloatArray, FloatArray]:
+        least, most, away = self._diagonals()
         scale = (most - least) * (most + least)  # 4 r1 r2
-        if not scale > 0:
-            return np.nan, np.nan
-        if abs(least - away) > CHANGE * (most + away):
-            return (least - away) * (least + away) / scale, np.inf
+        scale = np.where(scale > 0, scale, np.nan)
         narrow = least**2 / scale  # the diagonal is shortest there
-        return narrow if narrow > CHANGE else 1.0, np.inf
+        at_change = np.where(narrow <= CHANGE, 1.0, narrow)
+        changes = np.abs(least - away) <= CHANGE * (most + away)
+        a = np.where(changes, at_change, (least - away) * (least + away) / scale)
+        return a, np.where(np.isnan(scale), np.nan, np.inf)
 
     def class_of(self, tolerance: float) -> GrashofClass:
         share = float(self.shares()[1])
@@ -238,6 +236,11 @@ class InvertedLoop(_DiagonalLoop):
     def _diagonals(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The shortest and the longest diagonal, and the offset's size."""
         return (*self.apart_on_line(), np.abs(self.linkage.offset))
+
+
+def _without_change(value: FloatArray, share: FloatArray, defined: BoolArray | bool = True) -> FloatArray:
+    """A value that is 1 where a share vanishes, at a change point; NaN where it is not defined."""
+    return np.where(defined, np.where(np.abs(share) > CHANGE, value, 1.0), np.nan)
 
 
 FirstLoop: TypeAlias = FourBarLoop | SliderCrankLoop | InvertedLoop

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -84,30 +85,37 @@ def full_rotation(linkage: Linkage) -> BoolArray:
         turns = np.array(turns)
         for index in np.argwhere(turns).tolist():
             single = linkage[tuple(index)]
-            turns[tuple(index)] = closes_everywhere(single) and not len(cut(single).touched)
+            turns[tuple(index)] = bool(closes_everywhere(single)) and not len(cut(single).touched)
     return turns[()]
 
 
-def closes_everywhere(linkage: Linkage) -> bool:
-    """Whether a single linkage closes at every driver angle, change points included."""
+def closes_everywhere(linkage: Linkage) -> BoolArray:
+    """Whether the linkage closes at every driver angle, change points included, shape (...)."""
     if len(linkage.mechanism.dyads) == 1:
-        return bool((rotatability(linkage) >= 0).all())
-    ranges = cut(linkage).ranges
-    return len(ranges) == 1 and bool(np.ptp(ranges) > TURN - CHANGE)
+        return np.asarray((rotatability(linkage) >= 0).all(axis=-1))
+    ranges = [cut(linkage[index]).ranges for index in np.ndindex(linkage.shape)]
+    whole = [len(each) == 1 and bool(np.ptp(each) > TURN - CHANGE) for each in ranges]
+    return np.array(whole).reshape(linkage.shape)
 
 
-def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
-    """Whether a motion of the driver takes a single linkage to a change point, where all joints are in line.
+def passes_change_point(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike) -> BoolArray:
+    """Whether the driver takes a linkage to a change point, where all joints are in line, shape (...).
 
     There a parallelogram may become an antiparallelogram whatever the driver does: a dead position.
     """
-    stretched, folded = np.abs(rotatability(linkage)) <= CHANGE
-    low, high = (np.array(sorted((start, end))) - linkage.theta1) / np.pi
-    passed = np.arange(np.ceil(low - CHANGE), np.floor(high + CHANGE) + 1)
-    first = (folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any())
+    stretched, folded = np.moveaxis(np.abs(rotatability(linkage)) <= CHANGE, -1, 0)
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    first = np.ceil((low - linkage.theta1) / np.pi - CHANGE)
+    last = np.floor((high - linkage.theta1) / np.pi + CHANGE)
+    along, away = ((last > first) | ((last == first) & (first % 2 == odd)) for odd in (0, 1))
+    passed = (folded & along) | (stretched & away)
     if len(linkage.mechanism.dyads) == 1:
-        return bool(first)
-    return bool(first) or len(recurring(cut(linkage).touched, min(start, end), max(start, end))) > 0
+        return np.asarray(passed)
+
+    def touches(single: Linkage, least: float, most: float) -> float:
+        return float(len(recurring(cut(single).touched, least, most)) > 0)
+
+    return np.asarray(passed | (one_by_one(touches, linkage, low, high) > 0))
 
 
 def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
@@ -185,7 +193,8 @@ def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
 def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:
     """Index of the driver range of each angle, and the angle (rad) moved into it; -1 and NaN outside all.
 
-    An angle within `slack` (rad) of an end is inside.
+    Of one linkage, or of a batch that broadcasts against the angles. An angle within `slack` (rad) of an end
+    is inside.
     """
     return _within(driver_ranges(linkage), np.asarray(theta2, dtype=np.float64), slack)
 
@@ -193,11 +202,11 @@ def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) ->
 def _within(
     ranges: FloatArray, angle: FloatArray, slack: float = 1e-9, allowed: BoolArray | None = None
 ) -> tuple[IntArray, FloatArray]:
-    """The first range that each angle lies in, of those that `allowed`, shape (K, ...), admits."""
-    shape = angle.shape if allowed is None else allowed.shape[1:]
+    """The first range (..., K, 2) that each angle lies in, of those that `allowed` (K, ...) admits."""
+    shape = np.broadcast_shapes(ranges.shape[:-2], angle.shape if allowed is None else allowed.shape[1:])
     index, inside = np.full(shape, -1, dtype=np.int64), np.full(shape, np.nan)
-    for number, (low, high) in enumerate(ranges):
-        if np.isnan(low):
+    for number, (low, high) in enumerate(np.moveaxis(ranges, (-2, -1), (0, 1))):
+        if np.isnan(low).all():
             continue
         moved = low + (angle - low + slack) % (2 * np.pi) - slack
         hit = (moved <= high + slack) & (index < 0)
@@ -218,7 +227,7 @@ def circuit_index(
     Parameters
     ----------
     linkage : Linkage
-        A single linkage.
+        One, or a batch that broadcasts against `theta2` (``batch[:, None]``).
     theta2 : array_like, shape (...), rad
     assembly : array_like, shape (...)
         +1 or -1.
@@ -245,13 +254,10 @@ def circuit_index(
     [0, 1]
     """
     if len(linkage.mechanism.dyads) > 1:
-        index, side = _branch_of(linkage, theta2, assembly, assembly_2)
-        known = branches(linkage).circuits
-        return np.where(index < 0, -1, known[index, side] if len(known) else -1)
+        return _of_members(_circuit_of, linkage, theta2, assembly, assembly_2)
     index, _ = range_index(linkage, theta2)
-    if closes_everywhere(linkage):
-        return np.where(index < 0, -1, np.where(np.asarray(assembly) > 0, 0, 1))
-    return np.broadcast_to(index, np.broadcast_shapes(np.shape(index), np.shape(assembly)))
+    by_assembly = np.where(np.asarray(assembly) > 0, 0, 1)
+    return np.where(index < 0, -1, np.where(closes_everywhere(linkage), by_assembly, index))
 
 
 def branch_index(
@@ -270,23 +276,41 @@ def branch_index(
         0 to 3, of a six-bar more; -1 where the linkage cannot be assembled.
     """
     if len(linkage.mechanism.dyads) > 1:
-        index, side = _branch_of(linkage, theta2, assembly, assembly_2)
-    else:
-        index, _ = range_index(linkage, theta2)
-        side = (np.asarray(assembly) < 0).astype(np.int64)
-    return np.where(index < 0, -1, 2 * index + side)
+        return _of_members(_branch_of, linkage, theta2, assembly, assembly_2)
+    index, _ = range_index(linkage, theta2)
+    return np.where(index < 0, -1, 2 * index + (np.asarray(assembly) < 0))
 
 
-def _branch_of(
+_Numbering: TypeAlias = Callable[[Linkage, FloatArray, FloatArray, FloatArray], IntArray]
+
+
+def _of_members(
+    number: _Numbering,
     linkage: Linkage,
     theta2: npt.ArrayLike,
     assembly: npt.ArrayLike,
     assembly_2: npt.ArrayLike | None,
-) -> tuple[IntArray, IntArray]:
-    """Index in `branches` of each position of a six-bar, and 1 where its second assembly is -1."""
+) -> IntArray:
+    """Numbers of positions of six-bars, of one or, where the last axis of a batch has length 1, of each."""
     second = dyad_of(linkage, 2).sign if assembly_2 is None else assembly_2
+    at = np.broadcast_arrays(np.asarray(theta2, dtype=np.float64), assembly, second, np.empty(linkage.shape))
+    if not linkage.shape:
+        return number(linkage, *at[:3])
+    rows = np.ndindex(at[0].shape[:-1])
+    return np.array([number(linkage[(*row, 0)], *(each[row] for each in at[:3])) for row in rows]).reshape(
+        at[0].shape
+    )
+
+
+def _circuit_of(linkage: Linkage, *at: FloatArray) -> IntArray:
+    """Circuit of each position of a six-bar; -1 where it cannot be assembled."""
+    branch, known = _branch_of(linkage, *at), branches(linkage).circuits.ravel()
+    return np.where(branch < 0, -1, known[branch] if len(known) else -1)
+
+
+def _branch_of(linkage: Linkage, theta2: FloatArray, first: FloatArray, second: FloatArray) -> IntArray:
+    """Branch of each position of a six-bar: twice the index in `branches`, 1 more on the second assembly."""
     found = branches(linkage)
-    angle, first, second = np.broadcast_arrays(np.asarray(theta2, dtype=np.float64), assembly, second)
     allowed = found.assembly.reshape(-1, *(1,) * first.ndim) * first > 0
-    index, _ = _within(found.ranges, angle, allowed=allowed)
-    return index, (second < 0).astype(np.int64)
+    index, _ = _within(found.ranges, theta2, allowed=allowed)
+    return np.where(index < 0, -1, 2 * index + (second < 0))

@@ -50,7 +50,7 @@ def greatest(
     padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(1, 1)], constant_values=-np.inf)
     summit = (values >= padded[..., :-2]) & (values >= padded[..., 2:])
     summit[..., 1:] &= places[..., 1:] > places[..., :-1]
-    top = np.argsort(-np.where(summit, values, -np.inf), axis=-1, kind="stable")[..., :most]
+    top = _highest(np.where(summit, values, -np.inf), most)
     all_places = np.broadcast_to(places, values.shape)
     at, heights = [_taken(all_places, top)], [_taken(values, top)]
     low, high = (_taken(all_places, np.clip(top + k, 0, places.shape[-1] - 1)) for k in (-1, 1))
@@ -122,6 +122,15 @@ def last_where(
         still = holds(middle)
         inside, outside = np.where(still, middle, inside), np.where(still, outside, middle)
     return inside
+
+
+def _highest(values: FloatArray, most: int) -> IntArray:
+    """Indices of the highest values along the last axis, highest first."""
+    values, found = values.copy(), list[IntArray]()
+    for _ in range(min(most, values.shape[-1])):
+        found.append(values.argmax(axis=-1)[..., None])
+        np.put_along_axis(values, found[-1], -np.inf, axis=-1)
+    return np.concatenate(found, axis=-1)
 
 
 def _taken(values: FloatArray, index: IntArray) -> FloatArray:

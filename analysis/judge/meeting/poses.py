@@ -17,7 +17,7 @@ from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.numerics.minimisation import lowest_in_order
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
 _EXACT = 1e-13  # errors below this share of the size are rounding
 _SAMPLES = 361
@@ -30,26 +30,35 @@ _FREE = np.array(np.inf)
 
 
 def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
-    """The linkage nearest to each pose, by itself, on its own assembly unless the other is nearer.
+    """The linkages of a batch (B,) nearest to each pose, by itself; on the own assembly or a nearer other.
 
     Gauss-Newton steps begin where A would be if the body stood in the pose; where a pose is not met, a scan
     over all driver angles finds the lowest valleys.
     """
-    turned = np.exp(1j * (task.angles - linkage.body_angle))
-    origin = task.positions @ np.array([1, 1j]) - complex(*linkage.coupler_point) * turned
-    own = int(linkage.assembly)
-    signs = np.broadcast_to(np.array([[own], [-own]]), (2, len(task)))
+    (u, v), (x, y) = (np.moveaxis(each, -1, 0)[..., None] for each in (linkage.coupler_point, linkage.o2))
+    turned = np.exp(1j * (task.angles - linkage.body_angle[:, None]))
+    origin = task.positions @ np.array([1, 1j]) - (u + 1j * v) * turned
+    signs = np.broadcast_to(
+        (linkage.assembly[:, None] * [1, -1]).astype(np.int64)[..., None], (*linkage.shape, 2, len(task))
+    )
     whole = task.has_position & task.has_angle & (linkage.mechanism.carries == 3)  # whose origin is A
-    guess = np.where(whole, np.angle(origin - complex(*linkage.o2)), 0.0)
-    angle = np.broadcast_to(_into_ranges(driver_ranges(linkage), guess), signs.shape)
-    angle, miss = _descend(linkage, task, angle, signs)
-    if not _met(miss, task):
-        more, more_signs, more_miss = _valleys(linkage, task)
-        angle, signs = np.concatenate([angle, more]), np.concatenate([signs, more_signs])
-        miss = np.concatenate([miss, more_miss])
+    guess = np.where(whole, np.angle(origin - (x + 1j * y)), 0.0)
+    guess = _into_ranges(driver_ranges(linkage)[:, None], guess)[:, None]
+    angle, miss = _descend(linkage, task, np.broadcast_to(guess, signs.shape), signs)
+    theta2, assembly = _least(task, angle, miss, signs)
+    for row in np.flatnonzero(~_met(miss, task)).tolist():
+        more, more_signs, more_miss = _valleys(linkage[row], task)
+        every = ((angle[row], more), (miss[row], more_miss), (signs[row], more_signs))
+        theta2[row], assembly[row] = _least(task, *map(np.concatenate, every))
+    return Targets.of(linkage, task, theta2, assembly)
+
+
+def _least(task: Task, angle: FloatArray, miss: FloatArray, signs: IntArray) -> tuple[FloatArray, IntArray]:
+    """Driver angles and assemblies of the least misses, (..., N), of several (..., K, N)."""
     miss = np.where(miss <= _rounding(task), 0.0, miss)  # of several that meet a pose the own assembly
-    chosen, target = np.argmin(miss, axis=0), np.arange(len(task))
-    return Targets.of(linkage, task, angle[chosen, target], signs[chosen, target])
+    chosen = np.argmin(miss, axis=-2)[..., None, :]
+    theta2, assembly = np.take_along_axis(angle, chosen, axis=-2), np.take_along_axis(signs, chosen, axis=-2)
+    return theta2[..., 0, :], assembly[..., 0, :]
 
 
 def _valleys(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray, FloatArray]:
@@ -68,12 +77,13 @@ def _valleys(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray, FloatA
         nearest = np.argmin(misses(linkage, task, tried, signs), axis=0)
         angle = np.take_along_axis(tried, nearest[None], axis=0)[0]
         width /= 4
-    angle, miss = _descend(linkage, task, angle, signs)
+    (angle,), (miss,) = _descend(linkage[None], task, angle[None], signs[None])
     return angle, signs, miss
 
 
-def _met(miss: FloatArray, task: Task) -> bool:
-    return bool((miss.min(axis=0) <= _rounding(task)).all())
+def _met(miss: FloatArray, task: Task) -> BoolArray:
+    """Which linkages meet all poses, (...), from the misses (..., K, N)."""
+    return np.asarray((miss.min(axis=-2) <= _rounding(task)).all(axis=-1))
 
 
 def _rounding(task: Task) -> float:
@@ -83,36 +93,40 @@ def _rounding(task: Task) -> float:
 def _descend(
     linkage: Linkage, task: Task, angle: FloatArray, signs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Driver angles after Gauss-Newton steps, and their misses; each shape (K, N)."""
-    ends, model = driver_ranges(linkage), squares(linkage, task, signs)
-    best = misses(linkage, task, angle, signs)
+    """Driver angles of a batch (B,) after Gauss-Newton steps, and their misses; each shape (B, K, N)."""
+    every, angle = linkage[:, None, None], angle.copy()
+    best = misses(every, task, angle, signs)
+    rows = np.arange(len(angle))
     for _ in range(6):
-        if _met(best, task):
+        rows = rows[~_met(best[rows], task)]
+        if not rows.size:
             break
-        _, slope, _, positive = model(angle)
+        some = every if len(rows) == len(angle) else every[rows]
+        _, slope, _, positive = squares(some, task, signs[rows])(angle[rows])
         with np.errstate(divide="ignore", invalid="ignore"):
             step = -slope / positive
         step = np.where(np.isfinite(step), np.clip(step, -0.5, 0.5), 0.0)
-        moved = _into_ranges(ends, angle + step)
-        miss = misses(linkage, task, moved, signs)
-        better = miss < best
-        if not better.any():
-            break
-        angle, best = np.where(better, moved, angle), np.where(better, miss, best)
+        moved = _into_ranges(driver_ranges(some), angle[rows] + step)
+        miss = misses(some, task, moved, signs[rows])
+        better = miss < best[rows]
+        angle[rows] = np.where(better, moved, angle[rows])
+        best[rows] = np.where(better, miss, best[rows])
+        rows = rows[better.any(axis=(1, 2))]
     return angle, best
 
 
 def _into_ranges(ranges: FloatArray, theta2: FloatArray) -> FloatArray:
-    """Driver angles, moved to the nearest end of a range where they lie outside all."""
-    low, high = ranges[np.isfinite(ranges[:, 0])].T
-    if not low.size:
-        return theta2
+    """Driver angles, moved to the nearest end of a range (..., K, 2) where they lie outside all."""
+    low, high = ranges[..., 0], ranges[..., 1]
     inside = ((theta2[..., None] - low) % TURN <= high - low).any(axis=-1)
+    inside |= np.isnan(low).all(axis=-1)
     if inside.all():
         return theta2
-    ends = np.concatenate([low, high])
-    nearest = ends[np.argmin(np.abs(turned_from(theta2[..., None], ends)), axis=-1)]
-    return np.where(inside, theta2, nearest)
+    ends = np.concatenate([low, high], axis=-1)
+    away = np.abs(turned_from(theta2[..., None], ends))
+    nearest = np.argmin(np.nan_to_num(away, nan=np.inf), axis=-1)[..., None]
+    ends = np.broadcast_to(ends, away.shape)
+    return np.where(inside, theta2, np.take_along_axis(ends, nearest, axis=-1)[..., 0])
 
 
 def poses_in_order(

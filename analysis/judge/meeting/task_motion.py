@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -20,10 +20,10 @@ _ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """The closest approach of the linkage to each target: driver angle (N,) in rad, assembly, and errors.
+    """The closest approach of a linkage to each target: driver angle (N,) in rad, assembly, and errors.
 
     NaN where no position or angle is given; inf where it cannot be assembled; `output_error` (rad) is empty
-    but for functions.
+    but for functions. Those of a batch, (B, N), are indexed as arrays are.
     """
 
     theta2: FloatArray
@@ -34,10 +34,11 @@ class Targets:
 
     @classmethod
     def of(cls, linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray) -> Targets:
-        """The errors at given driver angles and assemblies, each of shape (N,)."""
+        """The errors at given driver angles and assemblies, each of shape (N,), or (B, N) of a batch (B,)."""
+        linkage = linkage[..., None]
         state = solve_position(linkage, theta2, assembly)
         gap = state.p - task.positions
-        distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
+        distance = np.nan_to_num(np.hypot(gap[..., 0], gap[..., 1]), nan=np.inf)
         turned = np.abs(turned_from(state.carrying + linkage.body_angle, task.angles))
         return cls(
             theta2,
@@ -45,6 +46,9 @@ class Targets:
             np.where(task.has_position, distance, np.nan),
             np.where(task.has_angle, np.nan_to_num(turned, nan=np.pi), np.nan),
         )
+
+    def __getitem__(self, index: int) -> Targets:
+        return Targets(*(getattr(self, each.name)[index] for each in fields(self)[:-1]))
 
 
 def misses(linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray) -> FloatArray:
@@ -128,23 +132,38 @@ class TaskMotion:
 
 def task_motion(linkage: Linkage, theta2: FloatArray, ordered: bool) -> TaskMotion:
     """The motion through driver angles (N,) in sequence, or the shortest that holds them all."""
-    turns = closes_everywhere(linkage)  # through a change point too, as circuits count it
-    index, inside = range_index(linkage, theta2)
-    if not turns and (index >= 0).all() and np.ptp(index) == 0:  # one range: no way around
-        direction = 1 if inside[-1] >= inside[0] else -1
-        in_order = bool((direction * np.diff(inside) >= -STEADY).all())
-        if ordered and in_order:
-            return TaskMotion.ordered(inside, direction)
-        return TaskMotion(inside, float(inside.min()), float(inside.max()), direction, in_order)
-    motions = [_turning(theta2, direction) for direction in (1, -1)]
-    best = min(motions, key=lambda motion: abs(motion.end - motion.start))
-    return best if ordered else _shortest_arc(theta2, best)
+    return task_motions(linkage[None], theta2[None], ordered)[0]
 
 
-def _turning(theta2: FloatArray, direction: int) -> TaskMotion:
+def task_motions(linkage: Linkage, theta2: FloatArray, ordered: bool) -> list[TaskMotion]:
+    """The motions of a batch (B,) through driver angles (B, N), each as of `task_motion`."""
+    index, inside = range_index(linkage[:, None], theta2)
+    # One range: no way around. A linkage turns through a change point too, as circuits count it.
+    swings = ~closes_everywhere(linkage) & np.all((index >= 0) & (index == index[:, :1]), axis=1)
+    direction = np.where(inside[:, -1] >= inside[:, 0], 1, -1)
+    in_order = np.all(direction[:, None] * np.diff(inside) >= -STEADY, axis=1)
+    around = [_turning(theta2, sense) for sense in (1, -1)]
+    found = list[TaskMotion]()
+    for row, angles in enumerate(inside):
+        if not swings[row]:
+            best = min((each[row] for each in around), key=lambda motion: abs(motion.end - motion.start))
+            found.append(best if ordered else _shortest_arc(theta2[row], best))
+        elif ordered and in_order[row]:
+            found.append(TaskMotion.ordered(angles, int(direction[row])))
+        else:
+            ends = float(angles.min()), float(angles.max())
+            found.append(TaskMotion(angles, *ends, int(direction[row]), bool(in_order[row])))
+    return found
+
+
+def _turning(theta2: FloatArray, direction: int) -> list[TaskMotion]:
     step = (direction * np.diff(theta2) + STEADY) % TURN - STEADY
-    unwrapped = theta2[0] + direction * np.concatenate([[0.0], np.cumsum(step)])
-    return replace(TaskMotion.ordered(unwrapped, direction), in_order=bool(step.sum() <= TURN + STEADY))
+    turned = np.concatenate([np.zeros((len(theta2), 1)), np.cumsum(step, axis=1)], axis=1)
+    unwrapped, within = theta2[:, :1] + direction * turned, step.sum(axis=1) <= TURN + STEADY
+    return [
+        replace(TaskMotion.ordered(angles, direction), in_order=bool(once))
+        for angles, once in zip(unwrapped, within, strict=True)
+    ]
 
 
 def _shortest_arc(theta2: FloatArray, ordered: TaskMotion) -> TaskMotion:

@@ -11,10 +11,11 @@ import pytest
 from grashof import problems
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.measures import MEASURES, PARTS, Values
-from grashof.analysis.judge.missed_limits import missed
+from grashof.analysis.judge.missed_limits import missed, stated_limits
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.tolerance import made_linkages
+from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Manufacturing, Problem, ProblemError, Requirements, TransmissionOver
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.limit_kinds import Kind, Limit
@@ -146,6 +147,12 @@ def limiting(key: str, low: float, high: float) -> Any:
     )
 
 
+def missed_by(values: Values, wanted: Any) -> list[Defect]:
+    """The defects of a design by limits."""
+    stated = stated_limits(values.problem, wanted, values.linkage.mechanism.word)
+    return list(missed(values, stated, wanted.same_branch))
+
+
 @pytest.mark.parametrize("kind", ["motion", "closed"])
 def test_every_measured_quantity_can_be_limited(kind: str) -> None:
     values = planted(2, kind)
@@ -157,7 +164,7 @@ def test_every_measured_quantity_can_be_limited(kind: str) -> None:
 
 def check_limits(values: Values, key: str) -> None:
     value, shown = values[key], MEASURED[key].unit.shown
-    assert not list(missed(values, limiting(key, value, value)))
+    assert not missed_by(values, limiting(key, value, value))
     step = {Unit.ANGLE: 1.0, Unit.RATIO: abs(value) + 0.01}.get(MEASURED[key].unit) or values.problem.scale(
         MEASURED[key]
     )
@@ -165,7 +172,7 @@ def check_limits(values: Values, key: str) -> None:
         (value + 0.01 * step, np.inf, "from"),
         (-np.inf, value - 0.01 * step, "up to"),
     ):
-        (defect,) = missed(values, limiting(key, low, high))
+        (defect,) = missed_by(values, limiting(key, low, high))
         assert (defect.requirement, defect.found) == (key, value * shown)
         assert defect.allowed.startswith(allowed)
         assert MEASURED[key].words in defect.what
@@ -176,17 +183,17 @@ def test_a_limit_needs_a_problem_that_states_its_quantity() -> None:
     values = planted(0)
     bare = Values(values.linkage, values.verdict, Problem(task=values.problem.task))
     with pytest.raises(ProblemError, match=r"requirements\.torque_peak needs a problem with dynamics"):
-        list(missed(bare, limiting("torque_peak", 0, 5)))
+        missed_by(bare, limiting("torque_peak", 0, 5))
 
 
 def test_without_a_motion_only_the_branch_is_named() -> None:
     values = planted(0)
     torn = Values(values.linkage, replace(values.verdict, branch_ok=False), values.problem)
     assert np.isnan(torn["omega4_max"])
-    assert not list(missed(torn, limiting("omega4_max", 0, 1)))
+    assert not missed_by(torn, limiting("omega4_max", 0, 1))
     study = limiting("omega4_max", 0, 1)
     study.same_branch = False
-    (defect,) = missed(torn, study)
+    (defect,) = missed_by(torn, study)
     assert np.isinf(defect.miss)
 
 

@@ -48,7 +48,7 @@ def test_the_judge_finds_no_greater_error_in_order(design: PublishedDesign) -> N
     assert verdict.order_ok
     assert verdict.circuit_ok
     assert verdict.branch_ok
-    targets, _ = meet(design.linkage, problem.task, Requirements(order=False))
+    [(targets, _)] = meet([design.linkage], design.linkage[None], problem.task, Requirements(order=False))
     assert (targets.position_error**2).sum() <= verdict.error_sse * (1 + 1e-9)
 
 

@@ -8,12 +8,18 @@ from changed_tasks import freed, perturbed
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.how_met import meet
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.problems import FourBar, MotionTask, PathTask, Requirements
 
 LEAST = Requirements(exact=False)
 TURN = 2 * np.pi
 MIXED = slice(2, None, 3), slice(1, None, 3)  # full poses, points and angles in turn
+
+
+def met(linkage: FourBar, task: Any, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    """The targets as a single linkage meets them, and its motion."""
+    return meet([linkage], linkage[None], task, wanted)[0]
 
 
 def squares_at(linkage: FourBar, task: MotionTask, theta2: Any) -> Any:
@@ -31,7 +37,7 @@ def test_planted_timed_poses_are_met_in_time(poses: int, mixed: bool) -> None:
         task, linkage = planted_motion(np.random.default_rng([poses, seed]), poses, timed=True)
         task = freed(task, *MIXED, timing=task.timing) if mixed and poses > 2 else task
         for order in (True, False):
-            targets, motion = meet(linkage, task, Requirements(order=order))
+            targets, motion = met(linkage, task, Requirements(order=order))
             assert np.nanmax(targets.position_error) < 1e-9 * task.size
             assert np.nanmax(targets.angle_error) < 1e-9
             turned = motion.direction * (motion.theta2 - motion.theta2[0])
@@ -55,7 +61,7 @@ def test_no_other_first_angle_has_less_squares(mixed: bool) -> None:
 
 def test_timed_poses_are_met_from_a_given_angle_on() -> None:
     task, linkage = planted_motion(np.random.default_rng(4), 5, timed=True)
-    _, motion = meet(linkage, task, Requirements(theta2_start_deg=33.0))
+    _, motion = met(linkage, task, Requirements(theta2_start_deg=33.0))
     assert motion.theta2[0] == np.radians(33.0)
 
 
@@ -71,7 +77,7 @@ def test_closed_poses_take_a_full_turn(timed: bool) -> None:
         assert plain.transmission_min_task >= closed.transmission_min_task
         assert closed.size >= plain.size
         np.testing.assert_allclose(closed.theta2, plain.theta2)
-        _, motion = meet(linkage, MotionTask(task.positions, task.angles, closed=True), LEAST)
+        _, motion = met(linkage, MotionTask(task.positions, task.angles, closed=True), LEAST)
         assert motion.end - motion.start == pytest.approx(motion.direction * TURN)
 
 
@@ -93,7 +99,7 @@ def test_weights_of_points_move_where_they_are_met_together() -> None:
     errors = []
     for heavy in (1.0, 1e4):
         task = MotionTask(places, np.full(4, np.nan), weights=[1, heavy, 1, 1])
-        targets, motion = meet(linkage, task, LEAST)
+        targets, motion = met(linkage, task, LEAST)
         assert motion.in_order
         errors.append(targets.position_error)
     assert errors[1][1] < 1e-3 * errors[0][1]
@@ -106,7 +112,7 @@ def test_the_driver_starts_within_half_a_turn(theta2: list[float], timed: bool) 
     crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
     angles = np.array(theta2)
     task = PathTask(solve_position(crank, angles).p, timing=angles - angles[0] if timed else None)
-    _, motion = meet(crank, task, Requirements())
+    _, motion = met(crank, task, Requirements())
     assert -np.pi < motion.start <= np.pi
     turns = (motion.theta2 - angles) / TURN
     assert turns == pytest.approx(np.full(3, np.round(turns[0])), abs=1e-9)

@@ -27,7 +27,7 @@ STILL = [[0, 0], [1, 0], [0, 1]]
 
 
 def nearest(linkage: FourBar, task: PathTask, **wanted: Any) -> tuple[Targets, TaskMotion]:
-    return meet(linkage, task, Requirements(**wanted))
+    return meet([linkage], linkage[None], task, Requirements(**wanted))[0]
 
 
 def sse(linkage: FourBar, task: PathTask, **wanted: Any) -> float:

@@ -29,6 +29,11 @@ FULL = st.integers(2, 8).map(lambda poses: ["full"] * poses)
 PARTS = FULL | st.lists(st.sampled_from(["full", "place", "turned"]), min_size=3, max_size=6)
 
 
+def each_nearest(linkage: FourBar, task: MotionTask) -> Targets:
+    """The targets where a single linkage is nearest to each."""
+    return nearest_to_poses(linkage[None], task)[0]
+
+
 def with_parts(task: MotionTask, parts: Parts) -> MotionTask:
     """The task with the other parts left free; the first pose keeps its position."""
     parts = ["place" if k == 0 and part == "turned" else part for k, part in enumerate(parts)]
@@ -55,7 +60,7 @@ def misses(close_loop: Brute, linkage: FourBar, task: MotionTask, theta2: Floats
 
 
 def assert_no_angle_of_a_scan_is_nearer(close_loop: Brute, linkage: FourBar, task: MotionTask) -> None:
-    found = nearest_to_poses(linkage, task)
+    found = each_nearest(linkage, task)
     np.testing.assert_array_equal(np.isnan(found.position_error), ~task.has_position)
     np.testing.assert_array_equal(np.isnan(found.angle_error), ~task.has_angle)
     square = np.nan_to_num(found.position_error) ** 2
@@ -73,7 +78,7 @@ def assert_no_angle_of_a_scan_is_nearer(close_loop: Brute, linkage: FourBar, tas
 def test_exact_parts_are_met_to_rounding(seed: int, parts: Parts) -> None:
     full, linkage = planted_motion(np.random.default_rng(seed), len(parts))
     task = with_parts(full, parts)
-    found = nearest_to_poses(linkage, task)
+    found = each_nearest(linkage, task)
     reach = linkage.lengths.max() + np.abs(full.positions).max()
     assert np.nanmax(found.position_error) <= 1e-12 * reach
     # Where the coupler does not turn, an angle is met over a range of driver angles: to a square root.
@@ -116,7 +121,7 @@ def test_errors_are_those_of_the_angles(close_loop: Brute, seed: int, parts: Par
     exact, linkage = planted_motion(rng, len(parts))
     task = with_parts(perturbed(exact, rng, 0.02), parts)
     theta2, assembly = rng.uniform(-4, 4, len(parts)), rng.choice([-1, 1], len(parts))
-    for found in (nearest_to_poses(linkage, task), Targets.of(linkage, task, theta2, assembly)):
+    for found in (each_nearest(linkage, task), Targets.of(linkage, task, theta2, assembly)):
         gap, turned = apart(close_loop, linkage, task, found.theta2, found.assembly)
         assert found.position_error == pytest.approx(gap, rel=1e-9, nan_ok=True)
         assert found.angle_error == pytest.approx(turned, rel=1e-9, abs=1e-12, nan_ok=True)
@@ -129,14 +134,14 @@ def test_poses_out_of_reach_of_the_driver_are_met_at_a_dead_position(close_loop:
     beyond = 1.1 * (b - a) / abs(b - a)
     positions = [[1.0, 1.0], [(p + beyond * 1e-3).real, (p + beyond * 1e-3).imag]]
     task = MotionTask(positions, [0.0, float(np.angle(b - a))], angle_length=1.0)
-    found = nearest_to_poses(rocker, task)
+    found = each_nearest(rocker, task)
     assert np.isfinite(found.position_error).all()
     assert found.position_error[1] < 2e-3
 
 
 def test_a_linkage_that_cannot_close_meets_nothing_and_stays_as_it_is() -> None:
     task = MotionTask([[0, 0], [1, 0], [2, 3]], [0.0, 0.2, 0.1])
-    nearest = nearest_to_poses(APART, task)
+    nearest = each_nearest(APART, task)
     assert np.isinf(nearest.position_error).all()
     way = task_motion(APART, nearest.theta2, True)
     targets, same = poses_in_order(APART, task, nearest, way)
@@ -153,7 +158,7 @@ def test_angle_lengths_decide_between_position_and_angle_and_weights_of_full_pos
     def nearest(share: float, weights: list[float] | None = None) -> Targets:
         length = share * exact.size
         task = MotionTask(positions, exact.angles, angle_length=length, weights=weights)
-        return nearest_to_poses(linkage, task)
+        return each_nearest(linkage, task)
 
     found = [nearest(share) for share in (1e-3, 1.0, 1e3)]
     for less, more in zip(found[1:], found[:-1], strict=True):
@@ -181,7 +186,7 @@ def out_of_order(seed: int, poses: int = 5, free: bool = False) -> tuple[MotionT
 
 def in_order(linkage: FourBar, task: MotionTask) -> tuple[Targets, TaskMotion] | None:
     """Poses in order; None where the nearest places are in order, or not on the linkage's assembly."""
-    nearest = nearest_to_poses(linkage, task)
+    nearest = each_nearest(linkage, task)
     way = task_motion(linkage, nearest.theta2, True)
     if way.in_order or (nearest.assembly != int(linkage.assembly)).any():
         return None
@@ -279,7 +284,7 @@ def test_a_rocker_stays_inside_its_range(close_loop: Brute) -> None:
 
 def test_every_pose_is_met_on_the_assembly_of_the_linkage() -> None:
     task, linkage = planted_motion(np.random.default_rng(2), 4)
-    nearest = nearest_to_poses(linkage, task)
+    nearest = each_nearest(linkage, task)
     mixed = Targets(nearest.theta2, np.array([1, -1, 1, 1]), nearest.position_error, nearest.angle_error)
     targets, way = poses_in_order(linkage, task, mixed, task_motion(linkage, nearest.theta2, True))
     assert (targets.assembly == int(linkage.assembly)).all()
