@@ -157,10 +157,9 @@ def angles_at_shares(
     """Driver angles at shares (..., N) of the even motions of linkages (...) between driver angles (...)."""
     if len(linkage.mechanism.dyads) == 1:
         return first_motion(linkage, start, end)[..., None].theta2
-    begins, ends = (np.broadcast_to(each, linkage.shape).astype(float) for each in (start, end))
-    motions = [
-        even_motion(linkage[at], begins[at].item(), ends[at].item()) for at in np.ndindex(linkage.shape)
-    ]
+    ends = [np.broadcast_to(each, linkage.shape).astype(float).ravel().tolist() for each in (start, end)]
+    members = [linkage[at] for at in np.ndindex(linkage.shape)]
+    motions = [even_motion(*each) for each in zip(members, *ends, strict=True)]
 
     def angles(share: FloatArray) -> FloatArray:
         shape = *np.broadcast_shapes(share.shape[:-1], linkage.shape), share.shape[-1]

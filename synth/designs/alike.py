@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.judging import ROUNDING, judged
+from grashof.synth.designs.judging import ROUNDING, Steps, ToJudge, made_linkage
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import (
@@ -30,10 +29,9 @@ _OF_MOTION = [
 
 def verified_alike(
     scaled: ScaledProblem, candidate: Candidate, most_error: float = np.inf
-) -> tuple[Candidate, ...]:
+) -> Steps[tuple[Candidate, ...]]:
     """Verified linkages that lead the coupler point, or the body, as a verified design does."""
     start = Start.of_linkage(scaled, candidate.linkage, candidate.verdict)
-    came_from: dict[str, Any] = {"start": candidate.start, "iterations": candidate.iterations}
     body, found = scaled.has_angles, list[Candidate]()
     for points in scaled.kind.alike(start.points, timed=scaled.timed, body=body):
         if overdue():
@@ -45,10 +43,11 @@ def verified_alike(
         at_once = _at_once(scaled, points)
         if met(np.delete(at_once.violations, _OF_MOTION, axis=1))[0]:
             angle = start.body_angle + turned if body else 0.0
-            other = judged(
-                scaled, points, int(at_once.assembly[0]), float(angle), most_error=most_error, **came_from
-            )
-            if other is not None and other.verdict.ok and _as_near(scaled, other, candidate):
+            linkage = made_linkage(scaled, points, int(at_once.assembly[0]), float(angle))
+            if linkage is None:
+                continue
+            other = yield ToJudge(linkage, candidate.start, candidate.iterations, most_error)
+            if other.verdict.ok and _as_near(scaled, other, candidate):
                 found.append(replace(other, cognate_of=candidate.id))
     return tuple(found)
 

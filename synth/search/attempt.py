@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from grashof.problems import Linkage
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.designs.alike import verified_alike
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.judging import MISSED, judged, judged_linkage, shares
+from grashof.synth.designs.judging import MISSED, Steps, ToJudge, in_step, made_linkage, shares
 from grashof.synth.designs.polishing import polished_solve, polished_start
 from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.nonlinear_programme import SOLVED, Solve, begun_from, solve_by_exchange
@@ -70,37 +70,49 @@ class Attempt:
         return (self.candidate, *self.cognates)
 
 
-def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bool = True) -> Attempt:
-    """Solve from start `number`, polish and verify the design, and its cognates where they are of use.
+def attempts(
+    scaled: ScaledProblem, starts: Sequence[Proposal], first: int, *, cognates: bool = True
+) -> list[Attempt]:
+    """Solve from starts, numbered from a first one; polish and verify the designs, which are judged together.
 
-    A linkage is verified as it is.
+    Their cognates too, where they are of use. A linkage is verified as it is.
     """
+    routines = [_attempt(scaled, start, number, cognates) for number, start in enumerate(starts, first)]
+    return in_step(scaled, routines)
+
+
+def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bool = True) -> Attempt:
+    """The attempt from start `number`."""
+    return attempts(scaled, [start], number, cognates=cognates)[0]
+
+
+def _attempt(scaled: ScaledProblem, start: Proposal, number: int, cognates: bool) -> Steps[Attempt]:
     if overdue():
         return Attempt(LEFT_ALONE, None)
     if isinstance(start, Linkage):
-        return Attempt(AS_IT_IS, judged_linkage(scaled, start, start=number, iterations=0))
+        return Attempt(AS_IT_IS, (yield ToJudge(start, number, 0)))
     if isinstance(start, DrivenLinkage):
-        known = judged_linkage(scaled, start.linkage, start=number, iterations=0, cylinder=start.cylinder)
-        return Attempt(AS_IT_IS, known)
+        return Attempt(AS_IT_IS, (yield ToJudge(start.linkage, number, 0, cylinder=start.cylinder)))
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
     solvable = scaled.has_targets or start.second is not None
     if start.terms.settled or not solvable or not set(UNSMOOTH).isdisjoint(start.terms.relaxed):
-        done = polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
+        done = yield from polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
     may_move = scaled.has_targets and start.terms.settled and finder.freedom
     if done is None or (may_move and not done.verified):
-        done = (_clear if start.second is None else _in_strides)(scaled, start, number)
+        done = yield from (_clear if start.second is None else _in_strides)(scaled, start, number)
     if cognates and done.verified and finder.cognates:
-        done = replace(done, cognates=verified_alike(scaled, done.verified[0], start.terms.most_error))
+        found = yield from verified_alike(scaled, done.verified[0], start.terms.most_error)
+        done = replace(done, cognates=found)
     return done
 
 
-def _clear(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
+def _clear(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
     """A solve; where it moves parts into areas between the targets, a solve nearer to the start, or none.
 
     No constraint keeps parts out of areas between the targets, but starts are screened there.
     """
-    done = _solved(scaled, start, number)
+    done = yield from _solved(scaled, start, number)
     wanted = scaled.wanted
     swept = bool(wanted.keep_out) and bool(
         set(wanted.keep_out_for) - set(scaled.kind.linkage.mechanism.ground)
@@ -109,23 +121,23 @@ def _clear(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
         return done
     if {defect.requirement for defect in done.candidate.verdict.defects} != {"keep_out"}:
         return done
-    as_it_is = polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
+    as_it_is = yield from polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
     if not as_it_is.verified:
         return done
     for radius in NEARER:
-        near = _solved(scaled, start.under(radius=min(radius, start.terms.radius)), number)
+        near = yield from _solved(scaled, start.under(radius=min(radius, start.terms.radius)), number)
         if near.verified and _key(scaled, near) < _key(scaled, as_it_is):
             return near
     return as_it_is
 
 
-def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
+def _solved(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
     """Solve; tighten and repeat while a single requirement is narrowly missed."""
     solve = solve_by_exchange(scaled, start)
     if solve.status not in SOLVED and any(Form.of(scaled, start).nearest) and not stop_requested():
         start = start.under(loose=True)
         solve = solve_by_exchange(scaled, start)
-    done = polished_and_judged(scaled, start, solve, number)
+    done = yield from polished_and_judged(scaled, start, solve, number)
     for _ in range(MORE if solve.status in SOLVED else 0):
         more = _more(scaled, start, done.candidate)
         if not more or stop_requested():
@@ -135,16 +147,16 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
         if again.status not in SOLVED:
             break
         solve = replace(again, iterations=solve.iterations + again.iterations)
-        done = polished_and_judged(scaled, start, solve, number)
+        done = yield from polished_and_judged(scaled, start, solve, number)
     return done
 
 
-def _in_strides(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
+def _in_strides(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
     """Successive solves of a six-bar while they help, each with small moves of its pivots.
 
     Far from a start the loops seldom close.
     """
-    done = _solved(scaled, start.under(radius=STRIDE), number)
+    done = yield from _solved(scaled, start.under(radius=STRIDE), number)
     for _ in range(STRIDES - 1):
         here = done.candidate
         if here is None or not np.isfinite(here.verdict.theta2).all() or stop_requested():
@@ -152,7 +164,7 @@ def _in_strides(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
         if scaled.exact and not done.verified:
             break
         there = replace(Start.of_linkage(scaled, here.linkage, here.verdict), terms=start.terms)
-        again = _solved(scaled, there.under(radius=STRIDE), number)
+        again = yield from _solved(scaled, there.under(radius=STRIDE), number)
         if done.verified and (not again.verified or _key(scaled, again) >= _key(scaled, done)):
             break
         done = again
@@ -179,19 +191,16 @@ def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> d
     return {field: start.terms.tightened_by(field) + BEYOND * short}
 
 
-def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Attempt:
+def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Steps[Attempt]:
     """The design of a solve on its targets; of least squares as solved, if it is not a design there."""
     done = Attempt(solve.status, None)
     if not np.isfinite(solve.points).all():
         return done
-    about: dict[str, Any] = {
-        "start": number,
-        "iterations": solve.iterations,
-        "most_error": start.terms.most_error,
-    }
+    about = number, solve.iterations, start.terms.most_error
     for version in (polished_solve(scaled, start, solve), solve):
         points, second = np.array(version.points), version.second
-        candidate = judged(scaled, points, start.assembly, version.body_angle, second, **about)
+        linkage = made_linkage(scaled, points, start.assembly, version.body_angle, second)
+        candidate = None if linkage is None else (yield ToJudge(linkage, *about))
         done = replace(done, candidate=candidate)
         if done.verified or scaled.exact or version is solve:
             break

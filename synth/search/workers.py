@@ -21,7 +21,7 @@ import numpy as np
 from grashof.problems import SolverError
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.search.attempt import LEFT_ALONE, Attempt, attempt
+from grashof.synth.search.attempt import LEFT_ALONE, Attempt, attempts
 from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import StopRequested, stop_requested, stop_when
 
@@ -57,7 +57,7 @@ def _unpacked(packed: bytes) -> ScaledProblem:
 
 def solved_there(packed: bytes, *starts: Proposal) -> list[Attempt]:
     """Attempts, in a process that receives the problem in bytes."""
-    return [attempt(_unpacked(packed), start, 0) for start in starts]
+    return attempts(_unpacked(packed), starts, 0)
 
 
 def made_there(make: Make[T], packed: bytes, *which: float) -> T:
@@ -73,7 +73,7 @@ class Work:
 
     def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
         """Attempts from starts, numbered from a first one, in their order."""
-        return [attempt(scaled, start, number) for number, start in enumerate(starts, first)]
+        return attempts(scaled, starts, first)
 
     def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
         """The value of a function of a module for the problem and some numbers, such as a round."""
@@ -222,7 +222,7 @@ class Processes(OnExecutor):
         """Attempts from starts; in this process while the others begin."""
         made = list[Attempt]()
         while len(made) < len(starts) and not self._ready.done():
-            made.append(attempt(scaled, starts[len(made)], first + len(made)))
+            made += attempts(scaled, starts[len(made) :][:1], first + len(made))
         return made + super().attempts(scaled, starts[len(made) :], first + len(made))
 
     def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:

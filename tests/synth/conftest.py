@@ -304,18 +304,18 @@ class Mortal:
 
     def __init__(self) -> None:
         self.left = 10**9
-        self._attempt = workers_module.attempt
+        self._attempts = workers_module.attempts
 
-    def attempt(self, *given: Any) -> Any:
-        """An attempt, or the end."""
-        self.left -= 1
+    def attempts(self, scaled: Any, starts: Any, first: int) -> Any:
+        """Attempts, or the end."""
+        self.left -= len(starts)
         if self.left < 0:
             raise Killed
-        return self._attempt(*given)
+        return self._attempts(scaled, starts, first)
 
 
 @pytest.fixture
 def mortal(monkeypatch: pytest.MonkeyPatch) -> Mortal:
     made = Mortal()
-    monkeypatch.setattr(workers_module, "attempt", made.attempt)
+    monkeypatch.setattr(workers_module, "attempts", made.attempts)
     return made

@@ -39,6 +39,7 @@ from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.synth import Result
+from grashof.synth.designs.judging import in_step
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.nonlinear_programme import SOLVED, solve, solve_by_exchange
 from grashof.synth.programme.user_functions import numpy_on_symbols
@@ -338,7 +339,7 @@ def test_the_bound_holds_between_the_angles_of_the_grid() -> None:
     scaled, short = ScaledProblem.of(quick), []
     for start in finder_for(scaled).round(0, 8, np.random.default_rng(0), 1).starts[:8]:
         for solved in (solve(scaled, start), solve_by_exchange(scaled, start)):
-            made = polished_and_judged(scaled, start, solved, 0).candidate
+            made = in_step(scaled, [polished_and_judged(scaled, start, solved, 0)])[0].candidate
             assert made is not None
             peak = solved.peaks["torque_peak"] * quick.reference_torque
             converged = solved.status in SOLVED  # which of the starts do, rounding may decide

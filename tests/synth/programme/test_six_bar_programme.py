@@ -22,6 +22,7 @@ from grashof.problems import (
     load_linkage,
 )  # fmt: skip
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import in_step
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -66,7 +67,7 @@ def test_start_is_its_linkage(hosts: tuple[int, int], link: int) -> None:
     task = PathTask(state.p)
     scaled, start = begun(task, linkage, exact=True)
     assert np.abs(start.track[2] - scaled.targets[list(start.visit)]).max() < 1e-12
-    found = polished_and_judged(scaled, start, Solve.unchanged(start, ""), 0).candidate
+    found = in_step(scaled, [polished_and_judged(scaled, start, Solve.unchanged(start, ""), 0)])[0].candidate
     assert found is not None
     assert found.verdict.ok
     for row in linkage.mechanism.parameters:
