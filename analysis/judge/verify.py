@@ -19,8 +19,7 @@ from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.wanted_torque import torque_misses
 from grashof.analysis.mechanism.extremes import diagonal, reach_box
 from grashof.analysis.mechanism.mobility import (
-    branch_index,
-    circuit_index,
+    circuits_and_branches,
     closes_everywhere,
     full_rotation,
     grashof_class,
@@ -215,7 +214,7 @@ class Moved:
         """The figures of a batch in the motions that meet the targets."""
         start, end = np.array([(each.motion.start, each.motion.end) for each in met]).T
         at = np.stack([each.theta2 for each in met]), np.stack([each.assembly for each in met])
-        circuits, branches = (index(batch[:, None], *at) for index in (circuit_index, branch_index))
+        circuits, branches = circuits_and_branches(batch[:, None], *at)
         circuit_ok = (circuits == circuits[:, :1]).all(axis=1) & (circuits[:, 0] >= 0)
         circuit_ok &= [each.covered for each in met]
         branch_ok = circuit_ok & (branches == branches[:, :1]).all(axis=1)

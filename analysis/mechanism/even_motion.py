@@ -215,7 +215,7 @@ def ground_line(linkage: Linkage, low: float, high: float) -> FloatArray:
     return np.asarray(theta1 + np.pi * halves)
 
 
-def closer_at_ends(low: float, high: float, count: int) -> FloatArray:
-    """Values from end to end, shape (count,), closer together towards both."""
+def closer_at_ends(low: float | FloatArray, high: float | FloatArray, count: int) -> FloatArray:
+    """Values from end to end, closer towards both, shape (count,), or (..., count) of ends (..., 1)."""
     share: FloatArray = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
     return low + (high - low) * share

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -253,11 +252,7 @@ def circuit_index(
     >>> circuit_index(double_rocker, np.radians([60, -60]), assembly=1).tolist()
     [0, 1]
     """
-    if len(linkage.mechanism.dyads) > 1:
-        return _of_members(_circuit_of, linkage, theta2, assembly, assembly_2)
-    index, _ = range_index(linkage, theta2)
-    by_assembly = np.where(np.asarray(assembly) > 0, 0, 1)
-    return np.where(index < 0, -1, np.where(closes_everywhere(linkage), by_assembly, index))
+    return circuits_and_branches(linkage, theta2, assembly, assembly_2)[0]
 
 
 def branch_index(
@@ -275,37 +270,36 @@ def branch_index(
     ndarray of int, shape (...)
         0 to 3, of a six-bar more; -1 where the linkage cannot be assembled.
     """
-    if len(linkage.mechanism.dyads) > 1:
-        return _of_members(_branch_of, linkage, theta2, assembly, assembly_2)
-    index, _ = range_index(linkage, theta2)
-    return np.where(index < 0, -1, 2 * index + (np.asarray(assembly) < 0))
+    return circuits_and_branches(linkage, theta2, assembly, assembly_2)[1]
 
 
-_Numbering: TypeAlias = Callable[[Linkage, FloatArray, FloatArray, FloatArray], IntArray]
-
-
-def _of_members(
-    number: _Numbering,
+def circuits_and_branches(
     linkage: Linkage,
     theta2: npt.ArrayLike,
     assembly: npt.ArrayLike,
-    assembly_2: npt.ArrayLike | None,
-) -> IntArray:
-    """Numbers of positions of six-bars, of one or, where the last axis of a batch has length 1, of each."""
+    assembly_2: npt.ArrayLike | None = None,
+) -> tuple[IntArray, IntArray]:
+    """Circuit and branch of each position, as of `circuit_index` and `branch_index`."""
+    if len(linkage.mechanism.dyads) > 1:
+        return _of_six_bars(linkage, theta2, assembly, assembly_2)
+    (index, _), side = range_index(linkage, theta2), np.asarray(np.less(assembly, 0), dtype=np.int64)
+    circuit = np.where(closes_everywhere(linkage), side, index)
+    return np.where(index < 0, -1, circuit), np.where(index < 0, -1, 2 * index + side)
+
+
+def _of_six_bars(
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike, assembly_2: npt.ArrayLike | None
+) -> tuple[IntArray, IntArray]:
+    """Circuit and branch of positions of a six-bar, or of a batch whose last axis has length 1."""
     second = dyad_of(linkage, 2).sign if assembly_2 is None else assembly_2
     at = np.broadcast_arrays(np.asarray(theta2, dtype=np.float64), assembly, second, np.empty(linkage.shape))
-    if not linkage.shape:
-        return number(linkage, *at[:3])
-    rows = np.ndindex(at[0].shape[:-1])
-    return np.array([number(linkage[(*row, 0)], *(each[row] for each in at[:3])) for row in rows]).reshape(
-        at[0].shape
-    )
-
-
-def _circuit_of(linkage: Linkage, *at: FloatArray) -> IntArray:
-    """Circuit of each position of a six-bar; -1 where it cannot be assembled."""
-    branch, known = _branch_of(linkage, *at), branches(linkage).circuits.ravel()
-    return np.where(branch < 0, -1, known[branch] if len(known) else -1)
+    shape, branch, circuit = at[0].shape, list[IntArray](), list[IntArray]()
+    for row in np.ndindex(shape[:-1] if linkage.shape else ()):
+        single = linkage[(*row, 0)] if linkage.shape else linkage
+        branch.append(_branch_of(single, *(each[row] for each in at[:3])))
+        known = branches(single).circuits.ravel()
+        circuit.append(np.where(branch[-1] < 0, -1, known[branch[-1]] if len(known) else -1))
+    return np.reshape(circuit, shape), np.reshape(branch, shape)
 
 
 def _branch_of(linkage: Linkage, theta2: FloatArray, first: FloatArray, second: FloatArray) -> IntArray:

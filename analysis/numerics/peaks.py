@@ -50,7 +50,7 @@ def greatest(
     padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(1, 1)], constant_values=-np.inf)
     summit = (values >= padded[..., :-2]) & (values >= padded[..., 2:])
     summit[..., 1:] &= places[..., 1:] > places[..., :-1]
-    top = _highest(np.where(summit, values, -np.inf), most)
+    top = highest(np.where(summit, values, -np.inf), most)
     all_places = np.broadcast_to(places, values.shape)
     at, heights = [_taken(all_places, top)], [_taken(values, top)]
     low, high = (_taken(all_places, np.clip(top + k, 0, places.shape[-1] - 1)) for k in (-1, 1))
@@ -124,7 +124,7 @@ def last_where(
     return inside
 
 
-def _highest(values: FloatArray, most: int) -> IntArray:
+def highest(values: FloatArray, most: int) -> IntArray:
     """Indices of the highest values along the last axis, highest first."""
     values, found = values.copy(), list[IntArray]()
     for _ in range(min(most, values.shape[-1])):

@@ -16,12 +16,14 @@ from grashof.analysis.judge.meeting.task_motion import (
 from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.numerics.minimisation import lowest_in_order
+from grashof.analysis.numerics.peaks import highest
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
 _EXACT = 1e-13  # errors below this share of the size are rounding
 _SAMPLES = 361
 _VALLEYS = 6
+_AT_ONCE = 96  # targets of linkages scanned together, whose arrays fit into a cache
 _BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
 _PLACES = 120  # driver angles of a turn, or of a range, among which poses are assigned in order
 _MOST = 360  # such angles at most: valleys of many poses lie close together, so that some represent all
@@ -43,17 +45,19 @@ def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
     )
     whole = task.has_position & task.has_angle & (linkage.mechanism.carries == 3)  # whose origin is A
     guess = np.where(whole, np.angle(origin - (x + 1j * y)), 0.0)
-    guess = _into_ranges(driver_ranges(linkage)[:, None], guess)[:, None]
-    angle, miss = _descend(linkage, task, np.broadcast_to(guess, signs.shape), signs)
-    theta2, assembly = _least(task, angle, miss, signs)
-    for row in np.flatnonzero(~_met(miss, task)).tolist():
-        more, more_signs, more_miss = _valleys(linkage[row], task)
-        every = ((angle[row], more), (miss[row], more_miss), (signs[row], more_signs))
-        theta2[row], assembly[row] = _least(task, *map(np.concatenate, every))
+    ranges = driver_ranges(linkage)
+    guess = _into_ranges(ranges[:, None], guess)[:, None]
+    angle, miss = _descend(linkage, task, ranges, np.broadcast_to(guess, signs.shape), signs)
+    theta2, assembly = _least(task, angle, signs, miss)
+    missed = np.flatnonzero(~_met(miss, task))
+    for rows in np.array_split(missed, -(-missed.size * len(task) // _AT_ONCE) or 1):
+        more = _valleys(linkage[rows], task) if rows.size else (angle[rows], signs[rows], miss[rows])
+        every = zip((angle[rows], signs[rows], miss[rows]), more, strict=True)
+        theta2[rows], assembly[rows] = _least(task, *(np.concatenate(each, axis=1) for each in every))
     return Targets.of(linkage, task, theta2, assembly)
 
 
-def _least(task: Task, angle: FloatArray, miss: FloatArray, signs: IntArray) -> tuple[FloatArray, IntArray]:
+def _least(task: Task, angle: FloatArray, signs: IntArray, miss: FloatArray) -> tuple[FloatArray, IntArray]:
     """Driver angles and assemblies of the least misses, (..., N), of several (..., K, N)."""
     miss = np.where(miss <= _rounding(task), 0.0, miss)  # of several that meet a pose the own assembly
     chosen = np.argmin(miss, axis=-2)[..., None, :]
@@ -62,22 +66,29 @@ def _least(task: Task, angle: FloatArray, miss: FloatArray, signs: IntArray) -> 
 
 
 def _valleys(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Driver angles, assemblies and misses in the lowest valleys of the miss of each pose, (K, N)."""
-    ends = driver_ranges(linkage)
-    ranges = ends[np.isfinite(ends[:, 0])]
+    """Driver angles, assemblies and misses in the lowest valleys of the miss of each pose, (B, K, N)."""
+    ranges = driver_ranges(linkage)
     # Closer towards dead positions, where a linkage runs away from its driver.
-    around = np.concatenate([closer_at_ends(low, high, _SAMPLES) for low, high in ranges] or [np.zeros(1)])
-    miss = misses(linkage, task, around[:, None], np.array([1, -1])[:, None, None])
-    valley = (miss <= np.roll(miss, 1, axis=1)) & (miss <= np.roll(miss, -1, axis=1))
-    lowest = np.argsort(np.where(valley, miss, np.inf).reshape(-1, len(task)), axis=0)[:_VALLEYS]
-    angle, signs = around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
-    width = TURN / _SAMPLES * np.pi / 2  # no two samples lie farther apart
+    around = closer_at_ends(ranges[..., :1], ranges[..., 1:], _SAMPLES)
+    every, sides = linkage[:, None, None, None, None], np.array([1, -1])
+    miss = misses(every, task, around[:, None, :, :, None], sides[:, None, None, None])
+    beside = np.pad(miss, [(0, 0)] * 3 + [(1, 1), (0, 0)], constant_values=np.inf)
+    valley = (miss <= beside[:, :, :, :-2]) & (miss <= beside[:, :, :, 2:])
+    depths = np.moveaxis(np.where(valley, -miss, -np.inf).reshape(len(miss), -1, len(task)), 1, -1)
+    lowest = highest(depths, _VALLEYS)
+    found = np.isfinite(np.take_along_axis(depths, lowest, axis=-1))
+    lowest = np.moveaxis(np.where(found, lowest, lowest[..., :1]), -1, 1)
+    places = around.reshape(len(around), -1)
+    angle = np.nan_to_num(places[np.arange(len(places))[:, None, None], lowest % places.shape[1]])
+    signs = sides[lowest // places.shape[1]]
+    width, every = TURN / _SAMPLES * np.pi / 2, linkage[:, None, None, None]  # no samples lie farther apart
     for look in (_BESIDE, *[9] * 11):
-        tried = _into_ranges(ends, angle + width * np.linspace(-1, 1, look)[:, None, None])
-        nearest = np.argmin(misses(linkage, task, tried, signs), axis=0)
-        angle = np.take_along_axis(tried, nearest[None], axis=0)[0]
+        near = angle[:, None] + width * np.linspace(-1, 1, look)[:, None, None]
+        tried = _into_ranges(ranges[:, None, None, None], near)
+        nearest = np.argmin(misses(every, task, tried, signs[:, None]), axis=1)
+        angle = np.take_along_axis(tried, nearest[:, None], axis=1)[:, 0]
         width /= 4
-    (angle,), (miss,) = _descend(linkage[None], task, angle[None], signs[None])
+    angle, miss = _descend(linkage, task, ranges, angle, signs)
     return angle, signs, miss
 
 
@@ -91,7 +102,7 @@ def _rounding(task: Task) -> float:
 
 
 def _descend(
-    linkage: Linkage, task: Task, angle: FloatArray, signs: IntArray
+    linkage: Linkage, task: Task, ranges: FloatArray, angle: FloatArray, signs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Driver angles of a batch (B,) after Gauss-Newton steps, and their misses; each shape (B, K, N)."""
     every, angle = linkage[:, None, None], angle.copy()
@@ -106,7 +117,7 @@ def _descend(
         with np.errstate(divide="ignore", invalid="ignore"):
             step = -slope / positive
         step = np.where(np.isfinite(step), np.clip(step, -0.5, 0.5), 0.0)
-        moved = _into_ranges(driver_ranges(some), angle[rows] + step)
+        moved = _into_ranges(ranges[rows, None, None], angle[rows] + step)
         miss = misses(some, task, moved, signs[rows])
         better = miss < best[rows]
         angle[rows] = np.where(better, moved, angle[rows])
@@ -161,7 +172,7 @@ def poses_in_order(
 
 def _by_range(linkage: Linkage, task: Task) -> list[tuple[FloatArray, FloatArray, float, float]]:
     """Driver angles (M,) and weighted misses there (N, M), with the ends of each range of the driver."""
-    angle, signs, _ = _valleys(linkage, task)
+    (angle,), (signs,), _ = _valleys(linkage[None], task)
     bottoms = angle[signs == int(linkage.assembly)]
     ranges = list[tuple[FloatArray, float, float]]()
     if closes_everywhere(linkage):

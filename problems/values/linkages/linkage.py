@@ -136,8 +136,15 @@ class Linkage(Displayed):
 
     def __getitem__(self, index: Any) -> Self:
         index = index if isinstance(index, tuple) else (index,)
-        rows = zip(self.mechanism.parameters, self.parameters, strict=True)
-        return self._with(value[(*index, slice(None)) if row.paired else index] for row, value in rows)
+        made = object.__new__(type(self))  # its values are checked
+        if "mechanism" in self.__slots__:  # of six-bars, which are of many kinds
+            set_fields(made, mechanism=self.mechanism)
+        for row, value in zip(self.mechanism.parameters, self.parameters, strict=True):
+            some = value[(*index, slice(None)) if row.paired else index]
+            if some.ndim:
+                some.setflags(write=False)
+            set_fields(made, **{row.name: some})
+        return made
 
     def __repr__(self) -> str:
         """Of a single linkage: Python that makes it, in full precision."""
