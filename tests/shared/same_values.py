@@ -18,4 +18,4 @@ def check_same(one: Any, other: Any) -> None:
         for field in fields(one):
             check_same(getattr(one, field.name), getattr(other, field.name))
     else:
-        assert one == other
+        assert one == other or (one != one and other != other)  # NaN
