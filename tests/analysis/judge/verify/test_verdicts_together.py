@@ -8,18 +8,16 @@ from same_values import check_same
 from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.analysis.judge.verify import Asked, Judged
-from grashof.problems import Linkage, MotionTask, Requirements, StrokeTask
+from grashof.problems import Linkage, MotionTask, Requirements
 
 POSES, POSED = planted_motion(np.random.default_rng(1), poses=4)
 POINTS, LED = planted_path(np.random.default_rng(2), points=6)
 FREE = MotionTask(POSES.positions, np.where(np.arange(4) % 2, np.nan, POSES.angles), angle_length=1.0)
 TASKS = {
     "poses": (POSES, {}),
-    "least squares of poses": (POSES, {"exact": False}),
     "poses free in part": (FREE, {"exact": False, "order": False}),
     "closed": (MotionTask(POSES.positions, POSES.angles, closed=True), {"exact": False}),
     "points": (POINTS, {"exact": False}),
-    "stroke": (StrokeTask(swing=1.0, time_ratio=(np.pi + 1) / (np.pi - 1)), {}),
 }
 
 
@@ -30,9 +28,7 @@ def linkages() -> list[Linkage]:
     for kind in KINDS:
         batch = any_linkages(kind, 4, rng)
         found += [batch[k] for k in range(4)]
-    for row in list(ROWS)[:2]:
-        batch = six_bars(row, 2, rng)
-        found += [batch[k] for k in range(2)]
+    found += [six_bars(row, 1, rng)[0] for row in list(ROWS)[:2]]
     order = rng.permutation(len(found))
     return [found[k] for k in order]
 
@@ -41,7 +37,7 @@ def linkages() -> list[Linkage]:
 def test_a_verdict_does_not_depend_on_its_company(name: str) -> None:
     task, wanted = TASKS[name]
     requirements = Requirements(transmission_min_deg=20, **wanted)
-    every = [each for each in linkages() if len(each.mechanism.loops) == 1 or task.has_position.any()]
+    every = linkages()
     asked = Asked(task, requirements)
     together = asked.verdicts([Judged(each) for each in every])
     reverse = asked.verdicts([Judged(each) for each in every[::-1]])[::-1]
