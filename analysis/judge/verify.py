@@ -81,12 +81,12 @@ def verify(
     >>> verdict.ok, bool(verdict.error_max < 1e-12 * task.size)
     (True, True)
     """
-    asked = Asked(task, requirements, constraints, problem)
-    return asked.verdicts([Judged(linkage, most_square, cylinder)])[0]
+    judge = Judge(task, requirements, constraints, problem)
+    return judge.verdicts([Subject(linkage, most_square, cylinder)])[0]
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class Subject:
     """A linkage to be judged, with `most_square` and `cylinder` as of `verify`."""
 
     linkage: Linkage
@@ -94,8 +94,8 @@ class Judged:
     cylinder: Cylinder | None = None
 
 
-class Asked:
-    """The requirements that linkages are judged by, as of `verify`."""
+class Judge:
+    """The judge of linkages by the requirements of a task, with arguments as of `verify`."""
 
     def __init__(
         self,
@@ -109,7 +109,7 @@ class Asked:
         self.wanted = wanted.resolved(self.task.size, scale_free=self.task.scale_free)
         self.constraints, self.problem = constraints, problem
 
-    def verdicts(self, designs: Sequence[Judged]) -> list[Verdict]:
+    def verdicts(self, designs: Sequence[Subject]) -> list[Verdict]:
         """The verdicts on linkages, in their order; each to the last bit as on it alone."""
         found: dict[int, Verdict] = {}
         for alike in by_kind([each.linkage for each in designs]):
@@ -118,7 +118,7 @@ class Asked:
                 found |= zip(rows, self._of_kind([designs[row] for row in rows]), strict=True)
         return [found[row] for row in range(len(designs))]
 
-    def _of_kind(self, designs: Sequence[Judged]) -> Iterator[Verdict]:
+    def _of_kind(self, designs: Sequence[Subject]) -> Iterator[Verdict]:
         """Verdicts on linkages of one kind."""
         members = [each.linkage for each in designs]
         batch = type(members[0]).stacked(members)
@@ -137,7 +137,7 @@ class Asked:
             )
             yield replace(verdict, defects=defects)
 
-    def _figures(self, design: Judged, met: Met, moved: Moved, row: int) -> Verdict:
+    def _figures(self, design: Subject, met: Met, moved: Moved, row: int) -> Verdict:
         """The verdict on a linkage, without its defects."""
         targets, motion, problem = met.targets, met.motion, self.problem
         verdict = Verdict(

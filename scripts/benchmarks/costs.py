@@ -1,4 +1,4 @@
-"""Growth of cost along one axis at a time: targets, starts of a search, its effort, length of a list.
+"""Cost of verdicts, and its growth along one axis at a time: targets, starts of a search, effort, list.
 
 Prints processor time and peak memory (above that of the imports) of a process for each size, and the exponent
 with which each grows: the slope of a line through the logarithms. ``--count`` is the largest size.
@@ -19,6 +19,7 @@ from planted import exact_poses
 from grashof import load, synthesize
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
+from grashof.analysis.judge.verify import Judge, Subject
 from grashof.problems import MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.families import listed
@@ -123,11 +124,31 @@ def curve(axis: str, name: str, largest: int, seed: int) -> Iterator[str]:
     yield "time grows with the power {:.2f}, memory with {:.2f}".format(*powers)
 
 
+def verdicts(name: str, count: int, seed: int) -> Iterator[str]:
+    """Verdicts on the designs of a list, repeated to `count`: one by one, and together."""
+    problem = load(name)
+    found = synthesize(problem, seed=seed).candidates
+    designs = [Subject(found[k % len(found)].linkage) for k in range(count)]
+    judge = Judge(problem.task, problem.requirements, problem=problem)
+    singly, together = list[float](), list[float]()
+    for _ in range(5):
+        singly.append(timed(lambda: [judge.verdicts([each]) for each in designs], process_time)[1])
+        together.append(timed(lambda: judge.verdicts(designs), process_time)[1])
+    alone, batch = (1e3 * float(np.median(each)) / count for each in (singly, together))
+    yield f"{alone:.2f} ms each one by one, {batch:.2f} ms together, {batch / alone:.2f} times"
+
+
 CASES = [
-    Case(f"{axis}, {name}", 10**9, partial(curve, axis, name))
-    for axis, names in (
-        ("targets", DRAWN), ("starts", ["luggage"]), ("effort", ["luggage", "path-ellipse"]),
-        ("list", ["luggage"]),
-    )
-    for name in names
+    *(
+        Case(f"verdicts, {name}", 100, partial(verdicts, name))
+        for name in ("luggage", "path-18-timed", "function-sin", "quick-return", "watt-leg")
+    ),
+    *(
+        Case(f"{axis}, {name}", 10**9, partial(curve, axis, name))
+        for axis, names in (
+            ("targets", DRAWN), ("starts", ["luggage"]), ("effort", ["luggage", "path-ellipse"]),
+            ("list", ["luggage"]),
+        )
+        for name in names
+    ),
 ]  # fmt: skip

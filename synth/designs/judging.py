@@ -9,7 +9,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 
 from grashof.analysis import Verdict
-from grashof.analysis.judge.verify import Asked, Judged
+from grashof.analysis.judge.verify import Judge, Subject
 from grashof.problems import Cylinder, Linkage, Problem, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
@@ -125,9 +125,9 @@ def driven_verdicts(
 ) -> list[Verdict]:
     """Verdicts as of `driven_verdict`; `most_error` is the root mean square error that is allowed, sizes."""
     problem, task = scaled.problem, scaled.problem.task
-    judge = Asked(task, problem.requirements, scaled.constraints, problem)
+    judge = Judge(task, problem.requirements, scaled.constraints, problem)
     designs = [
-        Judged(linkage, len(task) * (most_error * task.size) ** 2, known)
+        Subject(linkage, len(task) * (most_error * task.size) ** 2, known)
         for linkage, most_error, known in asked
     ]
     verdicts = judge.verdicts(designs)

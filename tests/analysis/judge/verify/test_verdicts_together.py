@@ -7,7 +7,7 @@ from same_values import check_same
 
 from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_motion, planted_path
-from grashof.analysis.judge.verify import Asked, Judged
+from grashof.analysis.judge.verify import Judge, Subject
 from grashof.problems import Linkage, MotionTask, Requirements
 
 POSES, POSED = planted_motion(np.random.default_rng(1), poses=4)
@@ -38,9 +38,9 @@ def test_a_verdict_does_not_depend_on_its_company(name: str) -> None:
     task, wanted = TASKS[name]
     requirements = Requirements(transmission_min_deg=20, **wanted)
     every = linkages()
-    asked = Asked(task, requirements)
-    together = asked.verdicts([Judged(each) for each in every])
-    reverse = asked.verdicts([Judged(each) for each in every[::-1]])[::-1]
+    judge = Judge(task, requirements)
+    together = judge.verdicts([Subject(each) for each in every])
+    reverse = judge.verdicts([Subject(each) for each in every[::-1]])[::-1]
     for linkage, one, other in zip(every, together, reverse, strict=True):
         check_same(one, verify(linkage, task, requirements))
         check_same(one, other)
