@@ -54,7 +54,7 @@ def _met(pairs: Pairs, starts: Generators, limits: ShapeLimits, most: int) -> Ge
     for k in range(min(most, len(near))):
         if stop_requested() or len(found[0]) >= most:
             break
-        found.append(refined(Aim(pairs.desired, limits.of), near[k : k + 1], LONG).generator)
+        found.append(refined(Aim(pairs.desired, limits), near[k : k + 1], LONG).generators)
     return replace(pairs, limits=limits).kept(near.joined(found))
 
 

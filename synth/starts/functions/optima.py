@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
 from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
-from grashof.synth.theory.functions.optima import Aim, Optimum, refined, with_extremes
+from grashof.synth.theory.functions.optima import Aim, Ends, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import crank_starts, function_starts
 from grashof.synth.theory.stopping import stop_requested
@@ -77,70 +77,129 @@ class Optima:
 
     def aim(self) -> Aim:
         """The error to be made least."""
-        greatest, most = self.aims.task.norm == "max", self.aims.greatest_error
-        desired = self.aims.samples(self.sense) if greatest else self.aims.pairs(self.sense)
-        return Aim(desired, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
+        aims, greatest = self.aims, self.aims.task.norm == "max"
+        desired = aims.samples(self.sense) if greatest else aims.pairs(self.sense)
+        held, band = self.first is not None, aims.greatest_error
+        return Aim(desired, self.limits, greatest=greatest, held=held, band=band)
 
-    def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
-        """The best distinct optima from starts that come best first; of `few` only the best ones."""
+    @property
+    def apart(self) -> tuple[int, int]:
+        """Equal for searches whose limits differ in their transmission angle alone."""
+        by_driver, by_sense = self.limits.offset is not None, self.limits.rates is not None
+        return by_driver * self.driver, by_sense * self.sense
+
+    def quick_pass(self) -> Generators:
+        """A good optimum from few starts, if any: there usually is one, before the search has begun."""
         aim = self.aim()
-        tried = self._tried(aim, starts, TRIED)
-        worth = np.array([_worth(one) for one in tried])
-        hopeful = [tried[k] for k in _apart(tried, worth) if worth[k] <= HOPELESS * worth.min() + MET]
-        ends = [refined(aim, one.generator) for one in hopeful[:BASINS]]
-        if few:
-            ends = sorted(ends, key=_worth)[:BEST]
-        if aim.greatest:
-            ends = [self._with_extremes(aim, one) for one in ends]
-        good = [one for one in ends if one.missed <= ROUNDING]
-        for k in _apart(good, np.array([one.error for one in good])):
-            yield good[k]
-
-    def quick_pass(self) -> Iterator[Optimum]:
-        """A good optimum from few starts: there usually is one, before the search has begun."""
-        rng, aim = np.random.default_rng(0), self.aim()
-        starts = self._near(aim.desired, rng)[::SPARSE]
+        desired, held = aim.desired, self.first is not None
+        starts = self._near(desired, np.random.default_rng(0))[::SPARSE]
         batch, square = fitted(
-            aim.desired, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=QUICK_STEPS
+            desired, starts, self.limits.of, pull=PULLS[0], held=held, steps=QUICK_STEPS
         )
-        best = batch[best_apart(batch, square, CELL)]
-        if not len(best):
-            return
-        end = refined(aim, min(self._tried(aim, best, FIRST), key=_worth).generator)
+        tried = refined(aim, batch[best_apart(batch, square, CELL)[:FIRST]], SHORT)
+        ends = refined(aim, tried.generators[np.argsort(tried.worth, kind="stable")[:1]])
         if aim.greatest:
-            end = self._with_extremes(aim, end)
-        if end.missed <= ROUNDING:
-            yield end
+            ends = _Batch.of([(self, ends.generators)]).with_extremes()
+        return ends.generators[ends.missed <= ROUNDING]
 
-    @staticmethod
-    def _tried(aim: Aim, starts: Generators, most: int) -> list[Optimum]:
-        """A few steps from each of the first starts."""
-        return [refined(aim, starts[k : k + 1], SHORT) for k in range(min(most, len(starts)))]
-
-    def settled(self, end: Optimum) -> Optimum:
+    def settled(self, end: Optimum) -> Generators:
         """The same to all its digits: its valley is narrow, and its extremes move with it."""
+        found, error = end.generator, end.error
         for _ in range(SETTLED):
-            before, aim = end.error, self.aim()
-            end = self._with_extremes(aim, end) if aim.greatest else refined(aim, end.generator)
-            if abs(end.error - before) <= MET * before or stop_requested():
+            before, batch = error, _Batch.of([(self, found)])
+            ends = batch.with_extremes() if self.aims.task.norm == "max" else refined(batch.aim, found)
+            found, error = ends.generators, float(ends.error[0])
+            if abs(error - before) <= MET * before or stop_requested():
                 break
-        return end
-
-    def _with_extremes(self, aim: Aim, end: Optimum) -> Optimum:
-        """The same with all extremes of its error in view."""
-        return refined(with_extremes(aim, end.generator, *self.aims.dense(self.sense)), end.generator)
+        return found
 
 
-def _worth(one: Optimum) -> float:
-    """Its error and its misses; less is better."""
-    return one.error + 10 * one.missed
+@dataclass(frozen=True, slots=True)
+class Optimum:
+    """A generator of least error, in a batch of one, and the search that found it."""
+
+    search: Optima
+    generator: Generators
+    error: float
 
 
-def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:
-    """Which of some optima are distinct and finite, the least of `worth` first."""
+def optima(begun: Iterable[tuple[Optima, Generators]], *, few: bool) -> list[Optimum]:
+    """The best distinct optima of searches, from starts that come best first; of `few` only the best ones."""
+    together = dict[tuple[int, int], list[tuple[Optima, Generators]]]()
+    for search, starts in begun:
+        together.setdefault(search.apart, []).append((search, starts[:TRIED]))
+    found = list[Optimum]()
+    for some in together.values():
+        batch = _Batch.of(some)
+        batch, _ = batch.chosen(refined(batch.aim, batch.generators, SHORT), _hopeful)
+        ends = refined(batch.aim, batch.generators)
+        batch, ends = batch.chosen(ends, _best) if few else (batch, ends)
+        if batch.aim.greatest:
+            ends = replace(batch, generators=ends.generators).with_extremes()
+        batch, ends = batch.chosen(ends, _good)
+        for k, error in enumerate(ends.error.tolist()):
+            found.append(Optimum(batch.searches[batch.of_search[k]], ends.generators[k : k + 1], error))
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Batch:
+    """Generators of searches whose limits differ in their transmission angle alone."""
+
+    searches: Sequence[Optima]
+    of_search: IntArray  # (M,)
+    generators: Generators  # M of them
+
+    @classmethod
+    def of(cls, begun: Sequence[tuple[Optima, Generators]]) -> _Batch:
+        """All generators of some searches."""
+        searches, starts = zip(*begun, strict=True)
+        counts = [len(each) for each in starts]
+        return cls(searches, np.repeat(np.arange(len(counts)), counts), starts[0].joined(list(starts)))
+
+    @property
+    def aim(self) -> Aim:
+        """The errors to be made least."""
+        each = [search.aim() for search in self.searches]
+        outputs = np.stack([aim.desired.output for aim in each])[self.of_search]
+        angles = np.array([aim.limits.transmission for aim in each])[self.of_search]
+        return replace(
+            each[0],
+            desired=replace(each[0].desired, output=outputs),
+            limits=replace(each[0].limits, transmission=angles),
+        )
+
+    def with_extremes(self) -> Ends:
+        """Refined once more, with all extremes of their errors in view."""
+        dense = [each.aims.dense(each.sense) for each in self.searches]
+        outputs = np.stack([output for _, output in dense])[self.of_search]
+        return refined(with_extremes(self.aim, self.generators, dense[0][0], outputs), self.generators)
+
+    def chosen(self, ends: Ends, choose: Callable[[Ends], IntArray]) -> tuple[_Batch, Ends]:
+        """The ends that are chosen of each search."""
+        each = [np.flatnonzero(self.of_search == k) for k in range(len(self.searches))]
+        rows = np.concatenate([rows[choose(ends[rows])] for rows in each])
+        return _Batch(self.searches, self.of_search[rows], ends.generators[rows]), ends[rows]
+
+
+def _hopeful(tried: Ends) -> IntArray:
+    """The most promising, best first."""
+    best = _apart(tried, tried.worth)
+    return best[tried.worth[best] <= HOPELESS * tried.worth.min(initial=np.inf) + MET][:BASINS]
+
+
+def _best(ends: Ends) -> IntArray:
+    """The best, best first."""
+    return np.argsort(ends.worth, kind="stable")[:BEST]
+
+
+def _good(ends: Ends) -> IntArray:
+    """Those within the limits, best first."""
+    return _apart(ends, np.where(ends.missed <= ROUNDING, ends.error, np.inf))
+
+
+def _apart(ends: Ends, worth: FloatArray) -> IntArray:
+    """Which of some optima are distinct and of finite `worth`, the least first."""
     finite = np.flatnonzero(np.isfinite(worth))
-    if not finite.size:
-        return []
-    batch = some[0].generator.joined([some[k].generator for k in finite])
-    best: list[int] = finite[best_apart(batch, worth[finite], CELL)].tolist()
+    best: IntArray = finite[best_apart(ends.generators[finite], worth[finite], CELL)]
     return best

@@ -24,11 +24,16 @@ _TINY = 1e-30
 
 @dataclass(frozen=True, slots=True)
 class DesiredOutput:
-    """The desired output of a generator."""
+    """The desired output of a generator, or of each of several."""
 
-    turned: FloatArray  # (N,), rad: driver rotations from the first, growing from zero
-    output: FloatArray  # (N,): outputs there, but for a constant: angles in rad, or travel
+    turned: FloatArray  # (N,) or (M, N), rad: driver rotations from the first, growing from zero
+    output: FloatArray  # (N,) or (M, N): outputs there, but for a constant: angles in rad, or travel
     weights: FloatArray  # (N,), of the squared errors
+
+    def some(self, index: IntArray | BoolArray) -> DesiredOutput:
+        """Those of some of the generators."""
+        of_each = (each[index] if each.ndim > 1 else each for each in (self.turned, self.output))
+        return DesiredOutput(*of_each, self.weights)
 
     def errors(self, batch: Generators) -> FloatArray:
         """Output less the desired one, with the best zero of least squares, shape (M, N); NaN: open."""

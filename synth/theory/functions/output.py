@@ -140,7 +140,7 @@ class Generators(ABC):
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             crank, loop = self._closed(inputs)
             output: FloatArray = self.dyad.output(loop, crank)
-        return output if self.ONE_SENSE else np.unwrap(output, axis=1)
+        return output if self.ONE_SENSE else _unwrapped(output)
 
     def slopes(self, inputs: FloatArray) -> FloatArray:
         """Derivatives of the output by the shape, shape (M, N, K); NaN in dead positions."""
@@ -322,6 +322,15 @@ class Generators(ABC):
     @abstractmethod
     def at_b(self, output: FloatArray) -> ComplexArray:
         """B at outputs, shape (M, N)."""
+
+
+def _unwrapped(angles: FloatArray) -> FloatArray:
+    """Angles (M, N) without jumps by a turn; most rows have none."""
+    with np.errstate(invalid="ignore"):
+        jumps = (np.abs(np.diff(angles, axis=1)) > np.pi).any(axis=1)
+    if jumps.any():
+        angles[jumps] = np.unwrap(angles[jumps], axis=1)
+    return angles
 
 
 def crank_ratios(rng: np.random.Generator, count: int) -> FloatArray:
