@@ -103,7 +103,9 @@ class Functions(DesignFinder):
 
     def _begun_at(self, level: float, rng: np.random.Generator) -> Iterator[tuple[Optima, Generators]]:
         """Searches with at least a transmission angle, deg, that are not hopeless, and their starts."""
-        begun = [(search, search.starts(rng, 1)) for search in Optima.each(self.aims, float(np.radians(level)))]
+        begun = [
+            (search, search.starts(rng, 1)) for search in Optima.each(self.aims, float(np.radians(level)))
+        ]
         errors = [float(search.aim().error(starts[:1]).min(initial=np.inf)) for search, starts in begun]
         return (each for each, error in zip(begun, errors, strict=True) if error <= WORSE * min(errors))
 
@@ -138,7 +140,9 @@ class Functions(DesignFinder):
             if batch is None:
                 continue
             fit = [
-                float(search.aim().error(batch)[0]) if self.aims.mirrored or driver == search.driver else np.inf
+                float(search.aim().error(batch)[0])
+                if self.aims.mirrored or driver == search.driver
+                else np.inf
                 for search in every
             ]
             mine[int(np.argmin(np.nan_to_num(fit, nan=np.inf)))].append(batch)

@@ -93,9 +93,7 @@ class Optima:
         aim = self.aim()
         desired, held = aim.desired, self.first is not None
         starts = self._near(desired, np.random.default_rng(0))[::SPARSE]
-        batch, square = fitted(
-            desired, starts, self.limits.of, pull=PULLS[0], held=held, steps=QUICK_STEPS
-        )
+        batch, square = fitted(desired, starts, self.limits.of, pull=PULLS[0], held=held, steps=QUICK_STEPS)
         tried = refined(aim, batch[best_apart(batch, square, CELL)[:FIRST]], SHORT)
         ends = refined(aim, tried.generators[np.argsort(tried.worth, kind="stable")[:1]])
         if aim.greatest:
@@ -185,7 +183,8 @@ class _Batch:
 def _hopeful(tried: Ends) -> IntArray:
     """The most promising, best first."""
     best = _apart(tried, tried.worth)
-    return best[tried.worth[best] <= HOPELESS * tried.worth.min(initial=np.inf) + MET][:BASINS]
+    hopeful: IntArray = best[tried.worth[best] <= HOPELESS * tried.worth.min(initial=np.inf) + MET][:BASINS]
+    return hopeful
 
 
 def _best(ends: Ends) -> IntArray:

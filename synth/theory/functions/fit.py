@@ -32,8 +32,8 @@ class DesiredOutput:
 
     def some(self, index: IntArray | BoolArray) -> DesiredOutput:
         """Those of some of the generators."""
-        of_each = (each[index] if each.ndim > 1 else each for each in (self.turned, self.output))
-        return DesiredOutput(*of_each, self.weights)
+        turned, output = (each[index] if each.ndim > 1 else each for each in (self.turned, self.output))
+        return DesiredOutput(turned, output, self.weights)
 
     def errors(self, batch: Generators) -> FloatArray:
         """Output less the desired one, with the best zero of least squares, shape (M, N); NaN: open."""

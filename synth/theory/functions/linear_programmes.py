@@ -12,7 +12,7 @@ _PIVOT = 1e-9  # least rate at which a constraint is approached
 
 
 def least_linear(cost: FloatArray, rows: FloatArray, right: FloatArray, basis: IntArray) -> FloatArray:
-    """Unknowns (M, n) that minimise ``cost @ x`` under ``rows @ x <= right``, from a vertex of each programme.
+    """Unknowns (M, n) that minimise ``cost @ x`` under ``rows @ x <= right``, from a vertex of each.
 
     `cost` (n,), `rows` (M, R, n), `right` (M, R); `basis` (M, n) are the constraints that meet in the vertex,
     which has to be feasible. The simplex method over active sets (Best & Ritter, *Linear Programming*, 1985):
@@ -28,7 +28,7 @@ def least_linear(cost: FloatArray, rows: FloatArray, right: FloatArray, basis: I
     [[0.0, 1.0]]
     """
     every = np.arange(len(rows))
-    inverse: FloatArray = np.linalg.inv(rows[every[:, None], basis])
+    inverse = np.asarray(np.linalg.inv(rows[every[:, None], basis]), dtype=np.float64)
     slack = right - _times(rows, _times(inverse, right[every[:, None], basis]))
     found = np.empty((len(rows), len(cost)))
     going, basis = every, basis.copy()

@@ -44,7 +44,7 @@ class Ends:
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """The error to be minimised, and the limits; samples and limits are those of all generators, or of each."""
+    """The error to be minimised, and the limits, of all generators or of each."""
 
     desired: DesiredOutput  # for the greatest error, the samples
     limits: ShapeLimits
@@ -148,14 +148,13 @@ class _Linear:
 
     def some(self, index: BoolArray) -> _Linear:
         """Some of them."""
-        parts = (each[index] for each in (self.about, self.errors, self.slopes, self.limits, self.by_shape))
-        return _Linear(self.aim.some(index), *parts)
+        parts = (each[index] for each in (self.errors, self.slopes, self.limits, self.by_shape))
+        return _Linear(self.aim.some(index), self.about[index], *parts)
 
     @property
     def finite(self) -> BoolArray:
         """Whether the output has a rate everywhere, (M,): in a dead position it has none."""
-        finite: BoolArray = np.isfinite(self.slopes).all(axis=(1, 2))
-        return finite
+        return np.asarray(np.isfinite(self.slopes).all(axis=(1, 2)))
 
     def step(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The best steps within radii (M,), shape (M, K), and the scores predicted for them."""
@@ -327,8 +326,9 @@ def with_extremes(aim: Aim, batch: Generators, turned: FloatArray, output: Float
     at = np.argsort(~inner, axis=1, kind="stable")[:, :count]
     at = np.where(np.take_along_axis(inner, at, axis=1), at, 0)
     more = [np.take_along_axis(np.broadcast_to(each, off.shape), at, axis=1) for each in (turned, output)]
-    held = [np.broadcast_to(each, (len(batch), each.shape[-1])) for each in (aim.desired.turned, aim.desired.output)]
-    places, outputs = (np.concatenate(each, axis=1) for each in zip(held, more, strict=True))
+    samples = aim.desired.turned, aim.desired.output
+    known = [np.broadcast_to(each, (len(batch), each.shape[-1])) for each in samples]
+    places, outputs = (np.concatenate(each, axis=1) for each in zip(known, more, strict=True))
     order = np.argsort(places, axis=1, kind="stable")
     places, outputs = (np.take_along_axis(each, order, axis=1) for each in (places, outputs))
     return replace(aim, desired=DesiredOutput(places, outputs, np.ones(places.shape[1])))

@@ -79,4 +79,3 @@ def test_optima_do_not_depend_on_those_beside_them(greatest: bool) -> None:
         alone = refined(aim.some(every[k : k + 1]), starts[k : k + 1], 40)
         assert alone.worth == pytest.approx(together.worth[k], rel=1e-6)
     assert 0 < (together.missed > 0).sum() < len(starts)
-
