@@ -90,22 +90,24 @@ class Functions(DesignFinder):
             batch = exact_functions(self.aims, rng, max(enough, 8) + SPARE, size)
             return self._round(batch, together=not self._in_order)
         if number:
-            begun = [each for level in self.levels[number - 1 :] for each in self._begun_at(level, rng)]
+            rough = [search.rough(rng, 1) for search in Optima.each(self.aims)]
+            begun = [each for level in self.levels[number - 1 :] for each in self._begun_at(level, rough)]
             found = optima(begun, few=True)
             skip = len(self.levels) - number
         else:
-            begun = [(search, search.starts(rng, size)) for search in Optima.each(self.aims)]
+            begun = [(search, search.starts(search.rough(rng, size))) for search in Optima.each(self.aims)]
             found = optima(begun, few=False)
             best = min(found, key=lambda each: each.error, default=None)
             cosine = 1.0 if best is None else best.generator.worst_cosine(self.aims.limits.span)[0]
             skip = sum(level <= np.degrees(np.arccos(cosine)) for level in self.levels)
         return self._round([(each.generator, each.search.driver) for each in found], skip=skip)
 
-    def _begun_at(self, level: float, rng: np.random.Generator) -> Iterator[tuple[Optima, Generators]]:
+    def _begun_at(
+        self, level: float, rough: Sequence[Sequence[tuple[Generators, float]]]
+    ) -> Iterator[tuple[Optima, Generators]]:
         """Searches with at least a transmission angle, deg, that are not hopeless, and their starts."""
-        begun = [
-            (search, search.starts(rng, 1)) for search in Optima.each(self.aims, float(np.radians(level)))
-        ]
+        searches = Optima.each(self.aims, float(np.radians(level)))
+        begun = [(search, search.starts(each)) for search, each in zip(searches, rough, strict=True)]
         errors = [float(search.aim().error(starts[:1]).min(initial=np.inf)) for search, starts in begun]
         return (each for each, error in zip(begun, errors, strict=True) if error <= WORSE * min(errors))
 

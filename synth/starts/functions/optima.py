@@ -14,14 +14,16 @@ from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
 from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
-from grashof.synth.theory.functions.optima import Aim, Ends, refined, with_extremes
+from grashof.synth.theory.functions.optima import STEPS, Aim, Ends, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import crank_starts, function_starts
 from grashof.synth.theory.stopping import stop_requested
 
 CRANKS = 8000  # random full cranks, from which least squares begins besides
+ROUGH, ROUGH_STEPS = 13, 7  # samples of the range for the first steps of least squares, and their number
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
-BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
+BASINS, TRIED, SHORT = 12, 30, 5  # starts that are refined, and those tried in few steps
+EARLY = 12  # steps after which those that have become alike are refined no further
 # Of a quick pass: starts tried, the stride of those fitted, and their steps.
 FIRST, SPARSE, QUICK_STEPS = 3, 16, 12
 BEST = 2  # of the ends at a transmission angle that a choice is offered at
@@ -49,25 +51,44 @@ class Optima:
             for sense, driver, first in aims.ways()
         ]
 
-    def starts(self, rng: np.random.Generator, effort: float) -> Generators:
-        """Least squares from many starts, best first; limits pull."""
-        aims, limits = self.aims, self.limits
-        by_pairs = len(aims.task) >= 6 and aims.task.norm == "rms"
-        desired = aims.pairs(self.sense) if by_pairs else aims.samples(self.sense)
+    def rough(self, rng: np.random.Generator, effort: float) -> list[tuple[Generators, float]]:
+        """Many starts moved a few steps by least squares at few samples, with the pull of limits on them."""
+        aims, limits, held = self.aims, self.limits, self.first is not None
+        few = aims.pairs(self.sense) if self.by_pairs else aims.samples(self.sense, ROUGH)
         full = limits.margin is not None or bool(limits.shortest)
-        found: list[Generators] = []
+        found: list[tuple[Generators, float]] = []
         for _ in range(max(1, round(effort))):
-            kinds = [self._near(desired, rng)]
+            kinds = [self._near(self.desired, rng)]
             if full:
-                cranks = crank_starts(aims.kind, desired, rng, CRANKS, self.first, limits.shortest)
+                cranks = crank_starts(aims.kind, self.desired, rng, CRANKS, self.first, limits.shortest)
                 kinds.append(cranks[limits.of(cranks).value.min(axis=1) > -0.1])
             for starts in kinds:
                 for pull in PULLS if full else PULLS[:1]:
-                    batch, square = fitted(desired, starts, limits.of, pull=pull, held=self.first is not None)
-                    found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
-        batch = aims.kind.joined(found)
+                    batch, _ = fitted(few, starts, limits.of, pull=pull, held=held, steps=ROUGH_STEPS)
+                    found.append((batch, pull))
+        return found
+
+    def starts(self, rough: Iterable[tuple[Generators, float]]) -> Generators:
+        """Least squares from many starts, as `rough` gives them, best first; limits pull."""
+        desired, held, found = self.desired, self.first is not None, list[Generators]()
+        for begun, pull in rough:
+            batch, square = fitted(
+                desired, begun, self.limits.of, pull=pull, held=held, taken=ROUGH_STEPS - 1
+            )
+            found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
+        batch = self.aims.kind.joined(found)
         square = desired.square(desired.errors(batch))
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
+
+    @property
+    def by_pairs(self) -> bool:
+        """Whether the pairs are fitted, rather than samples of the range."""
+        return len(self.aims.task) >= 6 and self.aims.task.norm == "rms"
+
+    @property
+    def desired(self) -> DesiredOutput:
+        """The output that is fitted."""
+        return self.aims.pairs(self.sense) if self.by_pairs else self.aims.samples(self.sense)
 
     def _near(self, desired: DesiredOutput, rng: np.random.Generator) -> Generators:
         """Generators near the desired output."""
@@ -95,9 +116,10 @@ class Optima:
         starts = self._near(desired, np.random.default_rng(0))[::SPARSE]
         batch, square = fitted(desired, starts, self.limits.of, pull=PULLS[0], held=held, steps=QUICK_STEPS)
         tried = refined(aim, batch[best_apart(batch, square, CELL)[:FIRST]], SHORT)
-        ends = refined(aim, tried.generators[np.argsort(tried.worth, kind="stable")[:1]])
+        best = tried.generators[np.argsort(tried.worth, kind="stable")[:1]]
+        ends = refined(aim, best, QUICK_STEPS if aim.greatest else STEPS)
         if aim.greatest:
-            ends = _Batch.of([(self, ends.generators)]).with_extremes()
+            ends = _Batch.of([(self, ends.generators)]).with_extremes(QUICK_STEPS)
         return ends.generators[ends.missed <= ROUNDING]
 
     def settled(self, end: Optimum) -> Generators:
@@ -130,10 +152,10 @@ def optima(begun: Iterable[tuple[Optima, Generators]], *, few: bool) -> list[Opt
     for some in together.values():
         batch = _Batch.of(some)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, SHORT), _hopeful)
-        ends = refined(batch.aim, batch.generators)
-        batch, ends = batch.chosen(ends, _best) if few else (batch, ends)
+        batch, _ = batch.chosen(refined(batch.aim, batch.generators, EARLY), _distinct)
+        batch, ends = batch.chosen(refined(batch.aim, batch.generators), _best if few else _distinct)
         if batch.aim.greatest:
-            ends = replace(batch, generators=ends.generators).with_extremes()
+            ends = batch.with_extremes()
         batch, ends = batch.chosen(ends, _good)
         for k, error in enumerate(ends.error.tolist()):
             found.append(Optimum(batch.searches[batch.of_search[k]], ends.generators[k : k + 1], error))
@@ -167,11 +189,11 @@ class _Batch:
             limits=replace(each[0].limits, transmission=angles),
         )
 
-    def with_extremes(self) -> Ends:
+    def with_extremes(self, steps: int = STEPS) -> Ends:
         """Refined once more, with all extremes of their errors in view."""
         dense = [each.aims.dense(each.sense) for each in self.searches]
         outputs = np.stack([output for _, output in dense])[self.of_search]
-        return refined(with_extremes(self.aim, self.generators, dense[0][0], outputs), self.generators)
+        return refined(with_extremes(self.aim, self.generators, dense[0][0], outputs), self.generators, steps)
 
     def chosen(self, ends: Ends, choose: Callable[[Ends], IntArray]) -> tuple[_Batch, Ends]:
         """The ends that are chosen of each search."""
@@ -187,9 +209,14 @@ def _hopeful(tried: Ends) -> IntArray:
     return hopeful
 
 
+def _distinct(ends: Ends) -> IntArray:
+    """Those that are not alike, best first."""
+    return _apart(ends, ends.worth)
+
+
 def _best(ends: Ends) -> IntArray:
-    """The best, best first."""
-    return np.argsort(ends.worth, kind="stable")[:BEST]
+    """A few of them."""
+    return _distinct(ends)[:BEST]
 
 
 def _good(ends: Ends) -> IntArray:

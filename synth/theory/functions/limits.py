@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -78,10 +79,20 @@ def joined_rows(parts: Sequence[Dual]) -> Dual:
 
 def ratio_rows(logs: FloatArray, caps: FloatArray, unknowns: int) -> Dual:
     """Limits of the ratios of lengths, from their logarithms (M, n): the unit, and the first unknowns."""
-    upper, lower = np.nonzero(~np.eye(len(caps), dtype=bool) & np.isfinite(caps))
-    by_shape = np.eye(len(caps), unknowns + 1)[:, 1:]
-    slope = np.broadcast_to(by_shape[lower] - by_shape[upper], (len(logs), len(upper), unknowns))
-    return Dual(caps[upper, lower] - logs[:, upper] + logs[:, lower], slope)
+    upper, lower, most, slope = _ratios(caps.tobytes(), unknowns)
+    return Dual(
+        most - logs[:, upper] + logs[:, lower], np.broadcast_to(slope, (len(logs), len(upper), unknowns))
+    )
+
+
+@lru_cache(maxsize=16)
+def _ratios(caps: bytes, unknowns: int) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """Numbers of the longer and the shorter length of each limited ratio, its limit, and its slope."""
+    table = np.frombuffer(caps)
+    table = table.reshape(2 * (round(len(table) ** 0.5),))
+    upper, lower = np.nonzero(~np.eye(len(table), dtype=bool) & np.isfinite(table))
+    by_shape = np.eye(len(table), unknowns + 1)[:, 1:]
+    return upper, lower, table[upper, lower], by_shape[lower] - by_shape[upper]
 
 
 def cosine_rows(cosine: Dual, met: BoolArray, most: FloatArray) -> Dual:

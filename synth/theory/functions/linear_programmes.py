@@ -33,21 +33,22 @@ def least_linear(cost: FloatArray, rows: FloatArray, right: FloatArray, basis: I
     found = np.empty((len(rows), len(cost)))
     going, basis = every, basis.copy()
     for _ in range(_PIVOTS):
-        price = -(cost @ inverse) / np.sqrt(np.einsum("mij,mij->mj", inverse, inverse))
+        size = np.sqrt(np.einsum("mij,mij->mj", inverse, inverse))
+        price = -(cost @ inverse) / size
         leaving = price.argmin(axis=1)
         done = price[every, leaving] >= -_DUAL
         if done.any():
             found[going[done]] = _times(inverse[done], right[every[done][:, None], basis[done]])
             go_on = ~done
             going, rows, right, slack = going[go_on], rows[go_on], right[go_on], slack[go_on]
-            inverse, basis, leaving = inverse[go_on], basis[go_on], leaving[go_on]
+            inverse, basis, size, leaving = inverse[go_on], basis[go_on], size[go_on], leaving[go_on]
             every = np.arange(len(going))
         if not going.size:
             return found
         way = -inverse[every, :, leaving]
         rate = _times(rows, way)
         with np.errstate(divide="ignore", invalid="ignore"):
-            near = rate > _PIVOT * np.linalg.norm(way, axis=1)[:, None]
+            near = rate > _PIVOT * size[every, leaving, None]
             far = np.where(near, np.maximum(slack, 0.0) / rate, np.inf)
             far[every[:, None], basis] = np.inf
             entering = far.argmin(axis=1)

@@ -178,7 +178,7 @@ class Generators(ABC):
         r1, r2, r3, r4 = self.sizes_of(shape)
         sizes = Sizes(r1, r2, r3, r4, limits.shortest < 0 if limits.shortest else r2.value > r1)
         logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, : self.LINKS]], axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             parts = [ratio_rows(logs, limits.caps, self.UNKNOWNS), self._transmission(limits, sizes)]
             if limits.rates is not None:
                 parts.append(self._rate_rows(limits.rates, limits.span))
