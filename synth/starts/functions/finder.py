@@ -24,6 +24,7 @@ from grashof.synth.theory.functions.output import Generators
 
 LEVELS = tuple(np.arange(10.0, 61.0, 10.0).tolist())  # deg: transmission angles at which a choice is offered
 FINE = tuple(np.arange(5.0, 86.0, 5.0).tolist())  # where an error is allowed
+OFFERED = 1e-6  # miss of an angle at which a choice is offered
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
 SPARE = 10  # exact designs more than enough: the judge refuses some, and some are alike
 FINDS = "feasible finds"
@@ -92,7 +93,7 @@ class Functions(DesignFinder):
         if number:
             rough = [search.rough(rng, 1) for search in Optima.each(self.aims)]
             begun = [each for level in self.levels[number - 1 :] for each in self._begun_at(level, rough)]
-            found = optima(begun, few=True)
+            found = optima(begun, few=True, missed=OFFERED)
             skip = len(self.levels) - number
         else:
             begun = [(search, search.starts(search.rough(rng, size))) for search in Optima.each(self.aims)]

@@ -8,7 +8,7 @@ from typing import Self
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
@@ -143,8 +143,13 @@ class Optimum:
     error: float
 
 
-def optima(begun: Iterable[tuple[Optima, Generators]], *, few: bool) -> list[Optimum]:
-    """The best distinct optima of searches, from starts that come best first; of `few` only the best ones."""
+def optima(
+    begun: Iterable[tuple[Optima, Generators]], *, few: bool, missed: float = ROUNDING
+) -> list[Optimum]:
+    """The best distinct optima of searches, from starts that come best first; of `few` only the best ones.
+
+    Limits may be `missed` by so much.
+    """
     together = dict[tuple[int, int], list[tuple[Optima, Generators]]]()
     for search, starts in begun:
         together.setdefault(search.apart, []).append((search, starts[:TRIED]))
@@ -156,7 +161,7 @@ def optima(begun: Iterable[tuple[Optima, Generators]], *, few: bool) -> list[Opt
         batch, ends = batch.chosen(refined(batch.aim, batch.generators), _best if few else _distinct)
         if batch.aim.greatest:
             ends = batch.with_extremes()
-        batch, ends = batch.chosen(ends, _good)
+        batch, ends = batch.chosen(ends, lambda some: _apart(some, some.error, some.missed <= missed))
         for k, error in enumerate(ends.error.tolist()):
             found.append(Optimum(batch.searches[batch.of_search[k]], ends.generators[k : k + 1], error))
     return found
@@ -219,13 +224,8 @@ def _best(ends: Ends) -> IntArray:
     return _distinct(ends)[:BEST]
 
 
-def _good(ends: Ends) -> IntArray:
-    """Those within the limits, best first."""
-    return _apart(ends, np.where(ends.missed <= ROUNDING, ends.error, np.inf))
-
-
-def _apart(ends: Ends, worth: FloatArray) -> IntArray:
+def _apart(ends: Ends, worth: FloatArray, among: BoolArray | bool = True) -> IntArray:
     """Which of some optima are distinct and of finite `worth`, the least first."""
-    finite = np.flatnonzero(np.isfinite(worth))
+    finite = np.flatnonzero(np.isfinite(worth) & among)
     best: IntArray = finite[best_apart(ends.generators[finite], worth[finite], CELL)]
     return best
