@@ -20,7 +20,7 @@ from grashof import load, synthesize
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.verify import Judge, Subject
-from grashof.problems import MotionTask, PathTask, Problem, Requirements
+from grashof.problems import FunctionTask, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.families import listed
 from grashof.synth.designs.judging import judged
@@ -55,6 +55,16 @@ def closed_path(rng: np.random.Generator, count: int) -> Problem:
     return Problem(task=task, requirements=LEAST_SQUARES)
 
 
+def logarithm(rng: np.random.Generator, count: int) -> Problem:
+    """Pairs of log10 over a decade, of which the greatest error is minimised under a transmission angle."""
+    del rng
+    share = np.linspace(0, 1, count)
+    outputs = np.radians(90) * np.log10(1 + 9 * share)
+    task = FunctionTask(np.radians(60) * share, outputs, sense="either", norm="max")
+    wanted = Requirements(transmission_min_deg=40.0, link_ratio_max=10.0)
+    return Problem(task=task, requirements=wanted)
+
+
 def _noisy(rng: np.random.Generator, places: FloatArray, size: float) -> FloatArray:
     return places + rng.normal(0, NOISE * size, places.shape)
 
@@ -65,6 +75,7 @@ DRAWN: dict[str, Callable[[np.random.Generator, int], Problem]] = {
     "open path": open_path,
     "timed path": partial(open_path, is_timed=True),
     "closed path": closed_path,
+    "logarithm": logarithm,
 }
 
 

@@ -15,7 +15,7 @@ from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import Linkage, ProblemError, Task
-from grashof.problems.values.arrays import TURN, FloatArray, turned_from
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
 _STARTS = 720  # driver angles at the first pair that are tried, over the range of the driver
 _VALLEYS = 5
@@ -23,6 +23,8 @@ _NEAR = 17  # places about the lowest ones of valleys, ever closer
 _CLOSE = 1e-10  # rad, between starts: no closer
 _SAMPLES, _FINE = 97, 385  # of the range, where the greatest error decides: in valleys, and at their bottoms
 _SAME = 1 + 1e-9
+_STEEP = 4.0  # times the steps of a value between places that were tried: it falls by no more between them
+_BETWEEN = 0.25  # share of the change of a curve among the places by which it may be higher between them
 _NOTHING = 1e-12  # rad, or shares of the travel: starts whose errors differ by less are as good
 _SYMMETRIC = 1e-6  # share of r1: greatest distance from the mirror image at which a linkage is placed by it
 _ROUNDING = 1e-9  # rad, of driver ranges and transmission angles
@@ -155,30 +157,60 @@ class _Search:
 
     def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
         """RMS or greatest error for first angles (S,); infinite below the least transmission angle."""
-        task = self.task
-        inputs = task.inputs if self.squares else np.linspace(*task.span, samples)
-        turned = self.by.turned(starts, direction, inputs)
-        state = solve_position(self.linkage, starts[:, None] + direction * turned)
-        moved = moved_output(task, state, direction, unwrapped=not self.squares)
-        wanted = task.outputs if self.squares else task.output(inputs)
+        if not self.squares:
+            return self._highest(self._crests(starts, direction, samples)[0], starts, direction)
+        task, share = self.task, self.task.weights / self.task.weights.sum()
+        moved = self._moved(starts, direction, task.inputs, unwrapped=False)
         best = np.full(len(starts), np.inf)
         for sense in self.senses:
-            off = moved - sense * wanted
-            if self.squares:
-                share = task.weights / task.weights.sum()
-                off = _from_first(task, off)
-                off = off - (off @ share)[:, None]
-                value = np.sqrt(off**2 @ share)
-            else:
-                value = (_crest(off) + _crest(-off)) / 2
-            best = np.fmin(best, np.nan_to_num(value, nan=np.inf))
-        if self.transmission > 0:
-            ends = starts[:, None] + direction * self.by.turned(starts, direction, np.array(task.span))
-            worst = np.full(len(starts), -1.0)
-            known = np.isfinite(ends).all(axis=1)
-            worst[known] = worst_transmission(self.linkage, *ends[known].T)
-            best = np.where(worst >= self.transmission - _ROUNDING, best, np.inf)
-        return best
+            off = _from_first(task, moved - sense * task.outputs)
+            off = off - (off @ share)[:, None]
+            best = np.fmin(best, np.nan_to_num(np.sqrt(off**2 @ share), nan=np.inf))
+        return self._transmitted(best, starts, direction)
+
+    def _moved(
+        self, starts: FloatArray, direction: int, inputs: FloatArray, *, unwrapped: bool
+    ) -> FloatArray:
+        """Outputs (S, N) at inputs (N,) for first angles (S,)."""
+        turned = self.by.turned(starts, direction, inputs)
+        state = solve_position(self.linkage, starts[:, None] + direction * turned)
+        return moved_output(self.task, state, direction, unwrapped=unwrapped)
+
+    def _crests(
+        self, starts: FloatArray, direction: int, samples: int, some: IntArray | None = None
+    ) -> tuple[FloatArray, bool]:
+        """The error and its negative about each inner sample, for each sense, shape (T, S, K).
+
+        The greatest of three samples, or of the parabola through them if that has a crest; of `some` (K,) of
+        the inner samples only where no output jumps by a turn. Last, whether one did.
+        """
+        inputs = np.linspace(*self.task.span, samples)
+        wanted = self.task.output(inputs)
+        beside: list[slice | IntArray] = [slice(k, samples - 2 + k) for k in range(3)]
+        if some is not None:
+            places = np.unique(np.concatenate([some, some + 1, some + 2]))
+            inputs, wanted = inputs[places], wanted[places]
+            beside = [np.searchsorted(places, some + k) for k in range(3)]
+        moved = self._moved(starts, direction, inputs, unwrapped=some is None)
+        off = [moved - sense * wanted for sense in self.senses]
+        crests = [_crest(*(sign * each[:, k] for k in beside)) for each in off for sign in (1, -1)]
+        return np.stack(crests), not self.task.travels and bool((np.abs(moved) > np.pi).any())
+
+    def _highest(self, crests: FloatArray, starts: FloatArray, direction: int) -> FloatArray:
+        """Greatest errors (S,) of the best sense, as `values`."""
+        highest = crests.max(axis=-1)
+        best = np.nan_to_num((highest[::2] + highest[1::2]) / 2, nan=np.inf).min(axis=0)
+        return self._transmitted(best, starts, direction)
+
+    def _transmitted(self, values: FloatArray, starts: FloatArray, direction: int) -> FloatArray:
+        """Values (S,), infinite below the least transmission angle."""
+        if not self.transmission > 0:
+            return values
+        ends = starts[:, None] + direction * self.by.turned(starts, direction, np.array(self.task.span))
+        worst = np.full(len(starts), -1.0)
+        known = np.isfinite(ends).all(axis=1)
+        worst[known] = worst_transmission(self.linkage, *ends[known].T)
+        return np.where(worst >= self.transmission - _ROUNDING, values, np.inf)
 
     def value(self, start: float, direction: int) -> float:
         return float(self.values(np.array([start]), direction)[0])
@@ -207,23 +239,37 @@ class _Search:
 
     def bottoms(self, valleys: Sequence[tuple[float, int, float]]) -> list[tuple[float, int, float]]:
         """The same, with their bottoms in place of the starts within them."""
-        found = []
+        found = list[tuple[float, int, float]]()
         for direction in dict.fromkeys(direction for _, direction, _ in valleys):
             starts = np.array([start for _, way, start in valleys if way == direction])
-            for at in self._narrowed(starts, direction).tolist():
+            known = min((value for value, _, _ in found), default=np.inf)
+            for at in self._narrowed(starts, direction, known).tolist():
                 bottom = self._newton(at, direction) if self.squares else at
                 found.append((self.value(bottom, direction), direction, bottom))
         return found
 
-    def _narrowed(self, starts: FloatArray, direction: int) -> FloatArray:
-        """The lowest places within a step of some starts, which need not be smooth there, shape (S,)."""
+    def _narrowed(self, starts: FloatArray, direction: int, known: float) -> FloatArray:
+        """The lowest places within a step of some starts, which need not be smooth there, shape (at most S,).
+
+        Those are left out that are higher than others, or than a known value, however they fall between the
+        places that were tried.
+        """
         at, span = starts, TURN / _STARTS
-        share = np.linspace(-1, 1, _NEAR)
-        while span > _CLOSE:
+        share, some = np.linspace(-1, 1, _NEAR), None
+        while span > _CLOSE and at.size:
             near = at[:, None] + span * share  # its middle is the lowest so far
-            values = self.values(near.ravel(), direction).reshape(near.shape)
+            if self.squares:
+                values = self.values(near.ravel(), direction).reshape(near.shape)
+            else:
+                crests, jump = self._crests(near.ravel(), direction, _FINE, some)
+                values = self._highest(crests, near.ravel(), direction).reshape(near.shape)
+                if not jump:
+                    counts = _that_count(crests.reshape(len(crests), *near.shape, -1))
+                    some = np.flatnonzero(counts) if some is None else some[counts]
             lowest = np.where(values.min(axis=1) < values[:, _NEAR // 2], values.argmin(axis=1), _NEAR // 2)
-            at = np.take_along_axis(near, lowest[:, None], axis=1)[:, 0]
+            at, least = (np.take_along_axis(each, lowest[:, None], axis=1)[:, 0] for each in (near, values))
+            known = min(known, float(least.min()))
+            at = at[_least_between(values) <= known * _SAME + _NOTHING * self.task.output_unit]
             span *= 2 / (_NEAR - 1)
         return at
 
@@ -254,14 +300,30 @@ class _Search:
         return at
 
 
-def _crest(samples: FloatArray) -> FloatArray:
-    """The greatest of even samples (last axis), or of the parabolas through three that have a crest."""
-    before, here, after = samples[..., :-2], samples[..., 1:-1], samples[..., 2:]
+def _crest(before: FloatArray, here: FloatArray, after: FloatArray) -> FloatArray:
+    """The greatest of three even samples, or of the parabola through them if that has a crest."""
     crest = (here >= before) & (here >= after)
     bend = np.where(crest, 2 * here - before - after, 0.0)
     rise = np.divide((after - before) ** 2, 8 * bend, out=np.zeros_like(bend), where=bend > 0)
-    found: FloatArray = np.maximum(samples.max(axis=-1), (here + rise).max(axis=-1))
+    found: FloatArray = np.maximum(np.maximum(before, after), here + rise)
     return found
+
+
+def _that_count(crests: FloatArray) -> BoolArray:
+    """Which of several curves (T, V, S, K) may be the greatest of K somewhere among, or between, S starts."""
+    reach, least = np.fmax.reduce(crests, axis=2), np.fmin.reduce(crests, axis=2)
+    highest = np.fmin.reduce(crests.max(axis=-1), axis=2)
+    counts: BoolArray = (reach + _BETWEEN * (reach - least) >= highest[..., None]).any(axis=(0, 1))
+    return counts
+
+
+def _least_between(values: FloatArray) -> FloatArray:
+    """Bounds (V,) of the values at, and between, S starts each, (V, S); no bound where few are finite."""
+    finite = np.isfinite(values)
+    known = np.where(finite, values, 0.0)
+    steps = np.where(finite[:, 1:] & finite[:, :-1], np.abs(np.diff(known)), 0.0).max(axis=1)
+    least = values.min(axis=1) - _STEEP * steps
+    return np.where(finite.sum(axis=1) > 2, least, -np.inf)
 
 
 def _from_first(task: Task, outputs: FloatArray) -> FloatArray:

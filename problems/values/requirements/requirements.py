@@ -131,8 +131,7 @@ class Requirements(ReadOnly):
     cylinder_force_max : tuple of float, N, optional
         (lo, hi) for its greatest force.
     cylinder_rate : tuple of float, length, optional
-        (lo, hi) for the change of its length for a radian of link 4, the moment arm of its force, over the
-        task motion.
+        (lo, hi) for the moment arm of its force on link 4, the change of its length for a radian.
     coupler_angle_deg : tuple of float, deg, optional
         (lo, hi) for the direction A->B over the task motion; 360 deg more is the same.
     coupler_rate : tuple of float, optional

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -149,14 +150,21 @@ class FunctionLaw(ReadOnly):
     def output(self, turned: FloatArray) -> FloatArray:
         """Output for driver rotations, both from the first x, rad or length."""
         low, high = self.x
-        ends = self.value(np.array([low, high]))
         values = self.value(low + (high - low) * np.asarray(turned) / self.input_range)
-        dense = self.value(np.linspace(low, high, _DENSE))
-        forward = np.sign(ends[1] - ends[0]) or np.sign(dense[np.argmax(np.abs(dense - ends[0]))] - ends[0])
-        # A monotone law spans its ends exactly; samples of another one are a little within its extremes.
-        spread = max(abs(ends[1] - ends[0]), float(np.ptp(dense)))
-        rotated: FloatArray = forward * self.output_range * (values - ends[0]) / spread
+        begins, forward, spread = _extent(self)
+        rotated: FloatArray = forward * self.output_range * (values - begins) / spread
         return rotated
+
+
+@lru_cache(maxsize=16)
+def _extent(law: FunctionLaw) -> tuple[float, float, float]:
+    """The first value of a law, the sign of its change in forward direction, and the extent of its values."""
+    low, high = law.x
+    first, last = law.value(np.array([low, high])).tolist()
+    dense = law.value(np.linspace(low, high, _DENSE))
+    forward = float(np.sign(last - first) or np.sign(dense[np.argmax(np.abs(dense - first))] - first))
+    # A monotone law spans its ends exactly; samples of another one are a little within its extremes.
+    return first, forward, max(abs(last - first), float(np.ptp(dense)))
 
 
 def chebyshev_spacing(count: int) -> FloatArray:

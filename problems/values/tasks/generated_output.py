@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Self
+from functools import lru_cache
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,9 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.tasks.function_law import FunctionLaw
 from grashof.problems.values.units import Unit
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 
 class GeneratedOutput(ABC):
@@ -184,9 +188,15 @@ class GeneratedOutput(ABC):
         """
         at = np.asarray(inputs, dtype=np.float64)
         if self.law is None:
-            from scipy.interpolate import CubicSpline  # here: few problems need it
-
-            found: FloatArray = CubicSpline(self.inputs, self.outputs)(at)
+            found: FloatArray = _spline(self.inputs.tobytes(), self.outputs.tobytes())(at)
             return found
         before = self._before
         return self.law.output(at + before) - self.law.output(np.array(before))
+
+
+@lru_cache(maxsize=16)
+def _spline(places: bytes, values: bytes) -> CubicSpline:
+    """The cubic spline through values at places, arrays of floats as bytes."""
+    from scipy.interpolate import CubicSpline  # here: few problems need it
+
+    return CubicSpline(np.frombuffer(places), np.frombuffer(values))

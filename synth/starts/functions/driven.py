@@ -6,6 +6,7 @@ the linkages are known; for more pairs, the best fits under some triangles are f
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +21,7 @@ from grashof.synth.theory.functions.optima import Aim, refined
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import few_starts
 from grashof.synth.theory.functions.triangle import turned_by
-from grashof.synth.theory.stopping import stop_requested
+from grashof.synth.theory.stopping import StopRequested, stop_requested
 
 TRIANGLES = 240  # from which least squares begins
 ENDS, LONG = 12, 120  # of the best fits that are refined where pairs are met, and the steps of each
@@ -48,14 +49,15 @@ def through_by_cylinder(
 
 
 def _met(pairs: Pairs, starts: Generators, limits: ShapeLimits, most: int) -> Generators:
-    """Those that meet all pairs within limits: the best of many starts, refined one by one."""
+    """Those that meet all pairs within limits: the best of many starts, refined where too few do."""
+    within = replace(pairs, limits=limits)
     near, _ = fitted(pairs.desired, starts, limits.of)
-    found = [replace(pairs, limits=limits).kept(near)]
-    for k in range(min(most, len(near))):
-        if stop_requested() or len(found[0]) >= most:
-            break
-        found.append(refined(Aim(pairs.desired, limits.of), near[k : k + 1], LONG).generator)
-    return replace(pairs, limits=limits).kept(near.joined(found))
+    found = within.kept(near)
+    if len(found) < most:
+        with suppress(StopRequested):
+            ends = refined(Aim(pairs.desired, limits), near[:most], LONG)
+            found = found.joined([found, ends.generators])
+    return within.kept(found)
 
 
 def _raised(pairs: Pairs, found: Generators) -> Generators:

@@ -16,7 +16,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.exact import exact_functions
-from grashof.synth.starts.functions.optima import Optima
+from grashof.synth.starts.functions.optima import Optima, optima
 from grashof.synth.starts.functions.pairs import KNOWN
 from grashof.synth.theory.functions.fit import fitted
 from grashof.synth.theory.functions.optima import refined
@@ -24,6 +24,7 @@ from grashof.synth.theory.functions.output import Generators
 
 LEVELS = tuple(np.arange(10.0, 61.0, 10.0).tolist())  # deg: transmission angles at which a choice is offered
 FINE = tuple(np.arange(5.0, 86.0, 5.0).tolist())  # where an error is allowed
+OFFERED = 1e-6  # miss of an angle at which a choice is offered
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
 SPARE = 10  # exact designs more than enough: the judge refuses some, and some are alike
 FINDS = "feasible finds"
@@ -33,8 +34,8 @@ CLOSE = 8  # of the designs that miss a requirement
 class Functions(DesignFinder):
     """Linkages that generate a function.
 
-    Round 0 looks for those through all pairs, or those of least error; the others, a round for each angle,
-    for those of least error that transmit so much.
+    Round 0 looks for those through all pairs, or those of least error; another one, with the number of the
+    first transmission angle that these do not have, for those of least error at each angle from there on.
     """
 
     beginning: ClassVar[str] = "looking for linkages that generate the function"
@@ -79,41 +80,37 @@ class Functions(DesignFinder):
         if self.aims.exact or self.aims.obstacle:
             return None
         search = Optima.each(self.aims)[0]
-        found = [(optimum.generator, search.driver) for optimum in search.quick_pass()]
-        return Round(self._designs(found), {}, size=0)
+        found = search.quick_pass()
+        return Round(self._designs([(found, search.driver)] if len(found) else []), {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
-        """Exact designs at once; least errors angle by angle."""
+        """Exact designs at once; least errors, and then those at every transmission angle."""
         if number >= self.rounds_a_pass or self.aims.obstacle:
             return None
         if self.aims.exact:
             batch = exact_functions(self.aims, rng, max(enough, 8) + SPARE, size)
             return self._round(batch, together=not self._in_order)
         if number:
-            return self._round(self._at_level(self.levels[number - 1], rng))
-        found = [
-            (optimum, search.driver)
-            for search in Optima.each(self.aims)
-            for optimum in search.optima(search.starts(rng, size), few=False)
-        ]
-        best = min((optimum for optimum, _ in found), key=lambda each: each.error, default=None)
-        cosine = 1.0 if best is None else best.generator.worst_cosine(self.aims.limits.span)[0]
-        needless = sum(level <= np.degrees(np.arccos(cosine)) for level in self.levels)
-        return self._round([(optimum.generator, driver) for optimum, driver in found], skip=needless)
+            rough = [search.rough(rng, 1) for search in Optima.each(self.aims)]
+            begun = [each for level in self.levels[number - 1 :] for each in self._begun_at(level, rough)]
+            found = optima(begun, few=True, missed=OFFERED)
+            skip = len(self.levels) - number
+        else:
+            begun = [(search, search.starts(search.rough(rng, size))) for search in Optima.each(self.aims)]
+            found = optima(begun, few=False)
+            best = min(found, key=lambda each: each.error, default=None)
+            cosine = 1.0 if best is None else best.generator.worst_cosine(self.aims.limits.span)[0]
+            skip = sum(level <= np.degrees(np.arccos(cosine)) for level in self.levels)
+        return self._round([(each.generator, each.search.driver) for each in found], skip=skip)
 
-    def _at_level(self, level: float, rng: np.random.Generator) -> list[tuple[Generators, int]]:
-        """Some generators of least error with at least this transmission angle, deg."""
-        begun = list[tuple[Optima, Generators, float]]()
-        for search in Optima.each(self.aims, float(np.radians(level))):
-            starts = search.starts(rng, 1)
-            begun.append((search, starts, search.aim().error(starts[:1]) if len(starts) else np.inf))
-        least = min(error for *_, error in begun)
-        hopeful = [(search, starts) for search, starts, error in begun if error <= WORSE * least]
-        return [
-            (optimum.generator, search.driver)
-            for search, starts in hopeful
-            for optimum in search.optima(starts, few=True)
-        ]
+    def _begun_at(
+        self, level: float, rough: Sequence[Sequence[tuple[Generators, float]]]
+    ) -> Iterator[tuple[Optima, Generators]]:
+        """Searches with at least a transmission angle, deg, that are not hopeless, and their starts."""
+        searches = Optima.each(self.aims, float(np.radians(level)))
+        begun = [(search, search.starts(each)) for search, each in zip(searches, rough, strict=True)]
+        errors = [float(search.aim().error(starts[:1]).min(initial=np.inf)) for search, starts in begun]
+        return (each for each, error in zip(begun, errors, strict=True) if error <= WORSE * min(errors))
 
     def onward(
         self, designs: Sequence[Candidate], _misses: Sequence[Candidate] = (), /
@@ -121,14 +118,10 @@ class Functions(DesignFinder):
         """The least errors that designs for some transmission angle lead to; the best to all its digits."""
         if self.aims.exact or not designs:
             return []
-        found = [
-            (optimum, search)
-            for search, batch in self._again(designs)
-            for optimum in search.optima(batch, few=True)
-        ]
-        found.sort(key=lambda each: each[0].error)
-        settled = [(search.settled(optimum), search) for optimum, search in found[:1]]
-        return self._designs([(optimum.generator, search.driver) for optimum, search in found + settled])
+        found = sorted(optima(self._again(designs), few=True), key=lambda each: each.error)
+        batches = [(each.generator, each.search.driver) for each in found]
+        batches += [(each.search.settled(each), each.search.driver) for each in found[:1]]
+        return self._designs(batches)
 
     def follow(self, design: Candidate) -> list[Linkage | DrivenLinkage]:
         """The generator that a design leads to: through all pairs, or of least error nearby."""
@@ -138,7 +131,7 @@ class Functions(DesignFinder):
                 pairs, held = self.aims.pairs(search.sense), search.first is not None
                 found.append((fitted(pairs, batch, search.limits.of, held=held)[0], search.driver))
             else:
-                found.append((refined(search.aim(), batch).generator, search.driver))
+                found.append((refined(search.aim(), batch).generators, search.driver))
         return self._designs([each for each in found if len(each[0])])
 
     def _again(self, designs: Sequence[Candidate]) -> Iterator[tuple[Optima, Generators]]:
@@ -150,7 +143,9 @@ class Functions(DesignFinder):
             if batch is None:
                 continue
             fit = [
-                search.aim().error(batch) if self.aims.mirrored or driver == search.driver else np.inf
+                float(search.aim().error(batch)[0])
+                if self.aims.mirrored or driver == search.driver
+                else np.inf
                 for search in every
             ]
             mine[int(np.argmin(np.nan_to_num(fit, nan=np.inf)))].append(batch)
@@ -167,9 +162,11 @@ class Functions(DesignFinder):
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Proposal]:
         """Of exact ones the few most promising; of least errors those at every transmission angle."""
         del required, key
-        numbers = range(self.rounds_a_pass)
-        batch = [self.round(number, CLOSE, rng, 1) for number in numbers]
-        return [each for found in batch if found is not None for each in found.starts]
+        number, proposals = 0, list[Proposal]()
+        while (found := self.round(number, CLOSE, rng, 1)) is not None:
+            proposals += found.starts
+            number += 1 + found.skip
+        return proposals
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """Limits that contradict each other; pairs that no linkage goes through."""

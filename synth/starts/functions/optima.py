@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
 from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
-from grashof.synth.theory.functions.optima import Aim, Optimum, refined, with_extremes
+from grashof.synth.theory.functions.optima import STEPS, Aim, Ends, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import crank_starts, function_starts
 from grashof.synth.theory.stopping import stop_requested
 
 CRANKS = 8000  # random full cranks, from which least squares begins besides
+ROUGH, ROUGH_STEPS = 13, 7  # samples of the range for the first steps of least squares, and their number
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
-BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
+BASINS, TRIED, SHORT = 12, 30, 5  # starts that are refined, and those tried in few steps
+EARLY = 12  # steps after which those that have become alike are refined no further
 # Of a quick pass: starts tried, the stride of those fitted, and their steps.
 FIRST, SPARSE, QUICK_STEPS = 3, 16, 12
 BEST = 2  # of the ends at a transmission angle that a choice is offered at
@@ -49,25 +51,44 @@ class Optima:
             for sense, driver, first in aims.ways()
         ]
 
-    def starts(self, rng: np.random.Generator, effort: float) -> Generators:
-        """Least squares from many starts, best first; limits pull."""
-        aims, limits = self.aims, self.limits
-        by_pairs = len(aims.task) >= 6 and aims.task.norm == "rms"
-        desired = aims.pairs(self.sense) if by_pairs else aims.samples(self.sense)
+    def rough(self, rng: np.random.Generator, effort: float) -> list[tuple[Generators, float]]:
+        """Many starts moved a few steps by least squares at few samples, with the pull of limits on them."""
+        aims, limits, held = self.aims, self.limits, self.first is not None
+        few = aims.pairs(self.sense) if self.by_pairs else aims.samples(self.sense, ROUGH)
         full = limits.margin is not None or bool(limits.shortest)
-        found: list[Generators] = []
+        found: list[tuple[Generators, float]] = []
         for _ in range(max(1, round(effort))):
-            kinds = [self._near(desired, rng)]
+            kinds = [self._near(self.desired, rng)]
             if full:
-                cranks = crank_starts(aims.kind, desired, rng, CRANKS, self.first, limits.shortest)
+                cranks = crank_starts(aims.kind, self.desired, rng, CRANKS, self.first, limits.shortest)
                 kinds.append(cranks[limits.of(cranks).value.min(axis=1) > -0.1])
             for starts in kinds:
                 for pull in PULLS if full else PULLS[:1]:
-                    batch, square = fitted(desired, starts, limits.of, pull=pull, held=self.first is not None)
-                    found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
-        batch = aims.kind.joined(found)
+                    batch, _ = fitted(few, starts, limits.of, pull=pull, held=held, steps=ROUGH_STEPS)
+                    found.append((batch, pull))
+        return found
+
+    def starts(self, rough: Iterable[tuple[Generators, float]]) -> Generators:
+        """Least squares from many starts, as `rough` gives them, best first; limits pull."""
+        desired, held, found = self.desired, self.first is not None, list[Generators]()
+        for begun, pull in rough:
+            batch, square = fitted(
+                desired, begun, self.limits.of, pull=pull, held=held, taken=ROUGH_STEPS - 1
+            )
+            found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
+        batch = self.aims.kind.joined(found)
         square = desired.square(desired.errors(batch))
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
+
+    @property
+    def by_pairs(self) -> bool:
+        """Whether the pairs are fitted, rather than samples of the range."""
+        return len(self.aims.task) >= 6 and self.aims.task.norm == "rms"
+
+    @property
+    def desired(self) -> DesiredOutput:
+        """The output that is fitted."""
+        return self.aims.pairs(self.sense) if self.by_pairs else self.aims.samples(self.sense)
 
     def _near(self, desired: DesiredOutput, rng: np.random.Generator) -> Generators:
         """Generators near the desired output."""
@@ -77,70 +98,134 @@ class Optima:
 
     def aim(self) -> Aim:
         """The error to be made least."""
-        greatest, most = self.aims.task.norm == "max", self.aims.greatest_error
-        desired = self.aims.samples(self.sense) if greatest else self.aims.pairs(self.sense)
-        return Aim(desired, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
+        aims, greatest = self.aims, self.aims.task.norm == "max"
+        desired = aims.samples(self.sense) if greatest else aims.pairs(self.sense)
+        held, band = self.first is not None, aims.greatest_error
+        return Aim(desired, self.limits, greatest=greatest, held=held, band=band)
 
-    def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
-        """The best distinct optima from starts that come best first; of `few` only the best ones."""
+    @property
+    def apart(self) -> tuple[int, int]:
+        """Equal for searches whose limits differ in their transmission angle alone."""
+        by_driver, by_sense = self.limits.offset is not None, self.limits.rates is not None
+        return by_driver * self.driver, by_sense * self.sense
+
+    def quick_pass(self) -> Generators:
+        """A good optimum from few starts, if any: there usually is one, before the search has begun."""
         aim = self.aim()
-        tried = self._tried(aim, starts, TRIED)
-        worth = np.array([_worth(one) for one in tried])
-        hopeful = [tried[k] for k in _apart(tried, worth) if worth[k] <= HOPELESS * worth.min() + MET]
-        ends = [refined(aim, one.generator) for one in hopeful[:BASINS]]
-        if few:
-            ends = sorted(ends, key=_worth)[:BEST]
+        desired, held = aim.desired, self.first is not None
+        starts = self._near(desired, np.random.default_rng(0))[::SPARSE]
+        batch, square = fitted(desired, starts, self.limits.of, pull=PULLS[0], held=held, steps=QUICK_STEPS)
+        tried = refined(aim, batch[best_apart(batch, square, CELL)[:FIRST]], SHORT)
+        best = tried.generators[np.argsort(tried.worth, kind="stable")[:1]]
+        ends = refined(aim, best, QUICK_STEPS if aim.greatest else STEPS)
         if aim.greatest:
-            ends = [self._with_extremes(aim, one) for one in ends]
-        good = [one for one in ends if one.missed <= ROUNDING]
-        for k in _apart(good, np.array([one.error for one in good])):
-            yield good[k]
+            ends = _Batch.of([(self, ends.generators)]).with_extremes(QUICK_STEPS)
+        return ends.generators[ends.missed <= ROUNDING]
 
-    def quick_pass(self) -> Iterator[Optimum]:
-        """A good optimum from few starts: there usually is one, before the search has begun."""
-        rng, aim = np.random.default_rng(0), self.aim()
-        starts = self._near(aim.desired, rng)[::SPARSE]
-        batch, square = fitted(
-            aim.desired, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=QUICK_STEPS
-        )
-        best = batch[best_apart(batch, square, CELL)]
-        if not len(best):
-            return
-        end = refined(aim, min(self._tried(aim, best, FIRST), key=_worth).generator)
-        if aim.greatest:
-            end = self._with_extremes(aim, end)
-        if end.missed <= ROUNDING:
-            yield end
-
-    @staticmethod
-    def _tried(aim: Aim, starts: Generators, most: int) -> list[Optimum]:
-        """A few steps from each of the first starts."""
-        return [refined(aim, starts[k : k + 1], SHORT) for k in range(min(most, len(starts)))]
-
-    def settled(self, end: Optimum) -> Optimum:
+    def settled(self, end: Optimum) -> Generators:
         """The same to all its digits: its valley is narrow, and its extremes move with it."""
+        found, error = end.generator, end.error
         for _ in range(SETTLED):
-            before, aim = end.error, self.aim()
-            end = self._with_extremes(aim, end) if aim.greatest else refined(aim, end.generator)
-            if abs(end.error - before) <= MET * before or stop_requested():
+            before, batch = error, _Batch.of([(self, found)])
+            ends = batch.with_extremes() if self.aims.task.norm == "max" else refined(batch.aim, found)
+            found, error = ends.generators, float(ends.error[0])
+            if abs(error - before) <= MET * before or stop_requested():
                 break
-        return end
-
-    def _with_extremes(self, aim: Aim, end: Optimum) -> Optimum:
-        """The same with all extremes of its error in view."""
-        return refined(with_extremes(aim, end.generator, *self.aims.dense(self.sense)), end.generator)
+        return found
 
 
-def _worth(one: Optimum) -> float:
-    """Its error and its misses; less is better."""
-    return one.error + 10 * one.missed
+@dataclass(frozen=True, slots=True)
+class Optimum:
+    """A generator of least error, in a batch of one, and the search that found it."""
+
+    search: Optima
+    generator: Generators
+    error: float
 
 
-def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:
-    """Which of some optima are distinct and finite, the least of `worth` first."""
-    finite = np.flatnonzero(np.isfinite(worth))
-    if not finite.size:
-        return []
-    batch = some[0].generator.joined([some[k].generator for k in finite])
-    best: list[int] = finite[best_apart(batch, worth[finite], CELL)].tolist()
+def optima(
+    begun: Iterable[tuple[Optima, Generators]], *, few: bool, missed: float = ROUNDING
+) -> list[Optimum]:
+    """The best distinct optima of searches, from starts that come best first; of `few` only the best ones.
+
+    Limits may be `missed` by so much.
+    """
+    together = dict[tuple[int, int], list[tuple[Optima, Generators]]]()
+    for search, starts in begun:
+        together.setdefault(search.apart, []).append((search, starts[:TRIED]))
+    found = list[Optimum]()
+    for some in together.values():
+        batch = _Batch.of(some)
+        batch, _ = batch.chosen(refined(batch.aim, batch.generators, SHORT), _hopeful)
+        batch, _ = batch.chosen(refined(batch.aim, batch.generators, EARLY), _distinct)
+        batch, ends = batch.chosen(refined(batch.aim, batch.generators), _best if few else _distinct)
+        if batch.aim.greatest:
+            ends = batch.with_extremes()
+        batch, ends = batch.chosen(ends, lambda some: _apart(some, some.error, some.missed <= missed))
+        for k, error in enumerate(ends.error.tolist()):
+            found.append(Optimum(batch.searches[batch.of_search[k]], ends.generators[k : k + 1], error))
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Batch:
+    """Generators of searches whose limits differ in their transmission angle alone."""
+
+    searches: Sequence[Optima]
+    of_search: IntArray  # (M,)
+    generators: Generators  # M of them
+
+    @classmethod
+    def of(cls, begun: Sequence[tuple[Optima, Generators]]) -> _Batch:
+        """All generators of some searches."""
+        searches, starts = zip(*begun, strict=True)
+        counts = [len(each) for each in starts]
+        return cls(searches, np.repeat(np.arange(len(counts)), counts), starts[0].joined(list(starts)))
+
+    @property
+    def aim(self) -> Aim:
+        """The errors to be made least."""
+        each = [search.aim() for search in self.searches]
+        outputs = np.stack([aim.desired.output for aim in each])[self.of_search]
+        angles = np.array([aim.limits.transmission for aim in each])[self.of_search]
+        return replace(
+            each[0],
+            desired=replace(each[0].desired, output=outputs),
+            limits=replace(each[0].limits, transmission=angles),
+        )
+
+    def with_extremes(self, steps: int = STEPS) -> Ends:
+        """Refined once more, with all extremes of their errors in view."""
+        dense = [each.aims.dense(each.sense) for each in self.searches]
+        outputs = np.stack([output for _, output in dense])[self.of_search]
+        return refined(with_extremes(self.aim, self.generators, dense[0][0], outputs), self.generators, steps)
+
+    def chosen(self, ends: Ends, choose: Callable[[Ends], IntArray]) -> tuple[_Batch, Ends]:
+        """The ends that are chosen of each search."""
+        each = [np.flatnonzero(self.of_search == k) for k in range(len(self.searches))]
+        rows = np.concatenate([rows[choose(ends[rows])] for rows in each])
+        return _Batch(self.searches, self.of_search[rows], ends.generators[rows]), ends[rows]
+
+
+def _hopeful(tried: Ends) -> IntArray:
+    """The most promising, best first."""
+    best = _apart(tried, tried.worth)
+    hopeful: IntArray = best[tried.worth[best] <= HOPELESS * tried.worth.min(initial=np.inf) + MET][:BASINS]
+    return hopeful
+
+
+def _distinct(ends: Ends) -> IntArray:
+    """Those that are not alike, best first."""
+    return _apart(ends, ends.worth)
+
+
+def _best(ends: Ends) -> IntArray:
+    """A few of them."""
+    return _distinct(ends)[:BEST]
+
+
+def _apart(ends: Ends, worth: FloatArray, among: BoolArray | bool = True) -> IntArray:
+    """Which of some optima are distinct and of finite `worth`, the least first."""
+    finite = np.flatnonzero(np.isfinite(worth) & among)
+    best: IntArray = finite[best_apart(ends.generators[finite], worth[finite], CELL)]
     return best

@@ -24,11 +24,16 @@ _TINY = 1e-30
 
 @dataclass(frozen=True, slots=True)
 class DesiredOutput:
-    """The desired output of a generator."""
+    """The desired output of a generator, or of each of several."""
 
-    turned: FloatArray  # (N,), rad: driver rotations from the first, growing from zero
-    output: FloatArray  # (N,): outputs there, but for a constant: angles in rad, or travel
+    turned: FloatArray  # (N,) or (M, N), rad: driver rotations from the first, growing from zero
+    output: FloatArray  # (N,) or (M, N): outputs there, but for a constant: angles in rad, or travel
     weights: FloatArray  # (N,), of the squared errors
+
+    def some(self, index: IntArray | BoolArray) -> DesiredOutput:
+        """Those of some of the generators."""
+        turned, output = (each[index] if each.ndim > 1 else each for each in (self.turned, self.output))
+        return DesiredOutput(turned, output, self.weights)
 
     def errors(self, batch: Generators) -> FloatArray:
         """Output less the desired one, with the best zero of least squares, shape (M, N); NaN: open."""
@@ -55,12 +60,13 @@ def fitted(
     pull: float = 1.0,
     held: bool = False,
     steps: int = STEPS,
+    taken: int = 0,
 ) -> tuple[Generators, FloatArray]:
     """The best of many starts moved to least squares, best first, and their weighted sums of squares.
 
     Those open somewhere are left out, and of very many only the most promising continue, for at most `steps`
-    steps. Negative `limits` (as `ShapeLimits.of`) count as errors of `pull` times as much, in rad or in units
-    of the travel, and in the sums. The first driver angle stays if `held`.
+    steps, of which some may be `taken`. Negative `limits` (as `ShapeLimits.of`) count as errors of `pull`
+    times as much, in rad or in units of the travel, and in the sums. The first driver angle stays if `held`.
     Levenberg-Marquardt over the batch; the zero of the output is linear and eliminated (variable projection,
     Golub & Pereyra 1973).
     """
@@ -70,7 +76,7 @@ def fitted(
     batch, square = batch[np.isfinite(square)], square[np.isfinite(square)]
     damping = np.full(len(batch), 1e-3)
     done: BoolArray = np.zeros(len(batch), dtype=bool)
-    for step in range(steps):
+    for step in range(taken, steps):
         raise_if_overdue()
         batch, square, damping, done = _fewer(step, batch, square, damping, done)
         active = np.flatnonzero(~done)

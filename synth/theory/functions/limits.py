@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
 
-from grashof.problems.values.arrays import BoolArray, FloatArray, Limits
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray, Limits
 from grashof.synth.loop.dual import Dual
 
 LEAST_ANGLE = float(np.radians(0.3))  # least distance from a dead position
@@ -21,7 +22,7 @@ class ShapeLimits:
     span: float  # the last input, from the first driver angle on: rotation of the driver, rad, or a length
     # (n, n): greatest logarithm of length j over length k, of `Generators.lengths`
     caps: FloatArray = field(default_factory=lambda: np.full((4, 4), np.log(20.0)))
-    transmission: float = 0.0  # rad, least min(mu, pi - mu)
+    transmission: float | FloatArray = 0.0  # rad, least min(mu, pi - mu) of all, or of each (M,)
     over_cycle: bool = False  # over the full turn, not only over the rotation
     # The driver turns fully, and the shares of `rotatability` are this or more
     margin: float | None = None
@@ -37,10 +38,17 @@ class ShapeLimits:
         """Limits (M, L) with derivatives by the shape (M, L, K)."""
         return batch.limited(self)
 
+    def some(self, index: IntArray | BoolArray) -> ShapeLimits:
+        """Those of some of the generators."""
+        if np.ndim(self.transmission) == 0:
+            return self
+        return replace(self, transmission=np.asarray(self.transmission)[index])
+
     @property
-    def most_cosine(self) -> float:
-        """Greatest absolute cosine of the transmission angle."""
-        return float(np.cos(max(self.transmission, LEAST_ANGLE)))
+    def most_cosine(self) -> FloatArray:
+        """Greatest absolute cosine of the transmission angle, shape (1,) or (M, 1)."""
+        most: FloatArray = np.cos(np.maximum(self.transmission, LEAST_ANGLE))[..., None]
+        return most
 
 
 class Rows(Protocol):
@@ -71,13 +79,23 @@ def joined_rows(parts: Sequence[Dual]) -> Dual:
 
 def ratio_rows(logs: FloatArray, caps: FloatArray, unknowns: int) -> Dual:
     """Limits of the ratios of lengths, from their logarithms (M, n): the unit, and the first unknowns."""
-    upper, lower = np.nonzero(~np.eye(len(caps), dtype=bool) & np.isfinite(caps))
-    by_shape = np.eye(len(caps), unknowns + 1)[:, 1:]
-    slope = np.broadcast_to(by_shape[lower] - by_shape[upper], (len(logs), len(upper), unknowns))
-    return Dual(caps[upper, lower] - logs[:, upper] + logs[:, lower], slope)
+    upper, lower, most, slope = _ratios(caps.tobytes(), unknowns)
+    return Dual(
+        most - logs[:, upper] + logs[:, lower], np.broadcast_to(slope, (len(logs), len(upper), unknowns))
+    )
 
 
-def cosine_rows(cosine: Dual, met: BoolArray, most: float) -> Dual:
+@lru_cache(maxsize=16)
+def _ratios(caps: bytes, unknowns: int) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """Numbers of the longer and the shorter length of each limited ratio, its limit, and its slope."""
+    table = np.frombuffer(caps)
+    table = table.reshape(2 * (round(len(table) ** 0.5),))
+    upper, lower = np.nonzero(~np.eye(len(table), dtype=bool) & np.isfinite(table))
+    by_shape = np.eye(len(table), unknowns + 1)[:, 1:]
+    return upper, lower, table[upper, lower], by_shape[lower] - by_shape[upper]
+
+
+def cosine_rows(cosine: Dual, met: BoolArray, most: FloatArray) -> Dual:
     """Limits of a cosine (M, n) on both sides, where it is met."""
 
     def slope() -> FloatArray:

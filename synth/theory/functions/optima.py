@@ -1,4 +1,4 @@
-"""Least or smallest greatest error of one function generator under limits, from a start nearby."""
+"""Least or smallest greatest error of function generators under limits, from starts nearby."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.functions.fit import DesiredOutput, Limits
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.synth.theory.functions.fit import DesiredOutput
+from grashof.synth.theory.functions.limits import ShapeLimits
+from grashof.synth.theory.functions.linear_programmes import least_linear
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import raise_if_overdue
 
@@ -19,196 +21,267 @@ _HEAVY = 1e4  # of the slack in a step of least squares
 
 
 @dataclass(frozen=True, slots=True)
-class Optimum:
-    """Where the refinement of one generator ended."""
+class Ends:
+    """Where the refinement of some generators ended."""
 
-    generator: Generators
-    error: float  # root mean square or greatest error at the samples
-    missed: float  # amount by which the worst limit is missed; zero where all are met
-    steps: int
+    generators: Generators  # M of them
+    error: FloatArray  # (M,): root mean square or greatest error at the samples
+    missed: FloatArray  # (M,): amount by which the worst limit is missed; zero where all are met
+    steps: IntArray  # (M,)
+
+    def __len__(self) -> int:
+        return len(self.error)
+
+    def __getitem__(self, index: IntArray | BoolArray | slice) -> Ends:
+        return Ends(self.generators[index], self.error[index], self.missed[index], self.steps[index])
+
+    @property
+    def worth(self) -> FloatArray:
+        """Errors with the price of missed limits, shape (M,); less is better."""
+        worth: FloatArray = self.error + PRICE * self.missed
+        return worth
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """The error to be minimised, and the limits."""
+    """The error to be minimised, and the limits, of all generators or of each."""
 
     desired: DesiredOutput  # for the greatest error, the samples
-    limits: Limits  # as `ShapeLimits.of`
+    limits: ShapeLimits
     greatest: bool = False  # the greatest error is minimised, or else the (weighted) mean square
     held: bool = False  # the first driver angle stays
     band: float = np.inf  # greatest error that is allowed at any sample
 
-    def errors(self, generator: Generators) -> FloatArray:
-        """Output less the desired one at the samples, about the best zero, shape (N,); NaN: open."""
-        off = (generator.outputs(self.desired.turned) - self.desired.output)[0]
-        if self.greatest:
-            middle = (off.max() + off.min()) / 2
-        else:
-            middle = self.desired.weights @ off / self.desired.weights.sum()
-        centred: FloatArray = off - middle
+    def some(self, index: IntArray | BoolArray) -> Aim:
+        """The aims of some of the generators."""
+        return replace(self, desired=self.desired.some(index), limits=self.limits.some(index))
+
+    def errors(self, batch: Generators) -> FloatArray:
+        """Outputs less the desired ones at the samples, about the best zero of each, (M, N); NaN: open."""
+        off = batch.outputs(self.desired.turned) - self.desired.output
+        if not self.greatest:
+            return self.desired.centred(off)
+        middle = (off.max(axis=1) + off.min(axis=1)) / 2
+        centred: FloatArray = off - middle[:, None]
         return centred
 
-    def error(self, generator: Generators) -> float:
-        """Greatest, or root mean square."""
-        errors = self.errors(generator)
+    def sizes(self, errors: FloatArray) -> FloatArray:
+        """Greatest errors, or root mean squares, shape (M,)."""
         if self.greatest:
-            return float(np.abs(errors).max())
-        return float(np.sqrt(self.desired.weights @ errors**2 / self.desired.weights.sum()))
+            return np.asarray(np.abs(errors).max(axis=1))
+        return np.asarray(np.sqrt(self.desired.square(errors) / self.desired.weights.sum()))
 
-    def missed(self, generator: Generators) -> float:
-        """Amount by which the worst limit is missed."""
-        short = float(-self.limits(generator).value.min(initial=0.0))
+    def error(self, batch: Generators) -> FloatArray:
+        """Greatest errors, or root mean squares, shape (M,); NaN: open."""
+        return self.sizes(self.errors(batch))
+
+    def missed(self, errors: FloatArray, limits: FloatArray) -> FloatArray:
+        """Amounts by which the worst limit is missed, (M,), with these errors (M, N) and limits (M, L)."""
+        short: FloatArray = np.maximum(-limits.min(axis=1, initial=0.0), 0.0)
         if np.isfinite(self.band):
-            short = max(short, float(np.abs(self.errors(generator)).max()) - self.band)
+            short = np.maximum(short, np.abs(errors).max(axis=1) - self.band)
         return short
 
-    def score(self, generator: Generators) -> float:
-        """The number that falls from step to step; infinite where the loop is open."""
-        value = self.error(generator) + PRICE * self.missed(generator)
-        return value if np.isfinite(value) else np.inf
+    def ends(self, batch: Generators, steps: IntArray) -> Ends:
+        """Generators with their errors and misses."""
+        errors = self.errors(batch)
+        return Ends(batch, self.sizes(errors), self.missed(errors, self.limits.of(batch).value), steps)
+
+    def scores(self, batch: Generators) -> tuple[FloatArray, FloatArray]:
+        """The numbers (M,) that fall from step to step, infinite where the loop is open, and the errors."""
+        errors = self.errors(batch)
+        score = self.sizes(errors) + PRICE * self.missed(errors, self.limits.of(batch).value)
+        return np.where(np.isfinite(score), score, np.inf), errors
 
 
-def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
-    """The optimum near one start, closed at all samples; it may miss limits.
+def refined(aim: Aim, starts: Generators, steps: int = STEPS) -> Ends:
+    """The optimum near each start, closed at all samples; it may miss limits.
 
     Errors and limits are linearised about the best shape so far; within a trust region, there remains a
     linear programme for the greatest error or linear least squares under inequalities for the mean square
     (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
     """
-    generator, score, radius = start, aim.score(start), _FIRST
-    if not np.isfinite(score):
-        return Optimum(generator, np.inf, np.inf, 0)
-    linear = _Linear.of(aim, generator)
-    flat = 0
-    taken = 0
-    while taken < steps and linear.finite:
-        raise_if_overdue()
-        taken += 1
-        moved, predicted_score = linear.step(radius)
-        there, fresh = linear.best_along(generator, moved)
-        gain, expected_gain = score - fresh, score - predicted_score
-        if gain > 0:
-            generator, score = there, fresh
-            linear = _Linear.of(aim, generator)
-        share = gain / expected_gain if expected_gain > 0 else 0.0
-        if share > 0.7:
-            radius = min(_MOST, max(radius, 2.5 * float(np.abs(moved).max())))
-        elif share < 0.2:
-            radius = 0.3 * min(radius, float(np.abs(moved).max()) or radius)
-        flat = flat + 1 if abs(expected_gain) <= 1e-7 * score + 1e-16 else 0
-        if radius < _LEAST or flat > 1:
+    shape, score = starts.shape.copy(), aim.scores(starts)[0]
+    radius, flat, taken = np.full(len(starts), _FIRST), np.zeros(len(starts)), np.zeros(len(starts), int)
+    going = np.flatnonzero(np.isfinite(score))
+    for _ in range(steps):
+        linear = _Linear.of(aim.some(going), starts[going].changed(shape[going]))
+        if not linear.finite.all():
+            going, linear = going[linear.finite], linear.some(linear.finite)
+        if not going.size:
             break
-    return Optimum(generator, aim.error(generator), max(0.0, aim.missed(generator)), taken)
+        raise_if_overdue()
+        taken[going] += 1
+        moved, predicted = linear.step(radius[going])
+        there, fresh = linear.best_along(moved)
+        before = score[going]
+        gain, expected = before - fresh, before - predicted
+        shape[going[gain > 0]] = there[gain > 0]
+        score[going] = np.where(gain > 0, fresh, before)
+        share = np.divide(gain, expected, out=np.zeros(len(gain)), where=expected > 0)
+        farthest = np.abs(moved).max(axis=1)
+        wider = np.minimum(_MOST, np.maximum(radius[going], 2.5 * farthest))
+        closer = 0.3 * np.where(farthest > 0, np.minimum(radius[going], farthest), radius[going])
+        radius[going] = np.where(share > 0.7, wider, np.where(share < 0.2, closer, radius[going]))
+        flat[going] = np.where(np.abs(expected) <= 1e-7 * score[going] + 1e-16, flat[going] + 1, 0)
+        going = going[(radius[going] >= _LEAST) & (flat[going] <= 1)]
+    return aim.ends(starts.changed(shape), taken)
 
 
 @dataclass(frozen=True, slots=True)
 class _Linear:
-    """An aim, linearised about a shape."""
+    """An aim, linearised about some shapes."""
 
     aim: Aim
-    errors: FloatArray  # (N,)
-    slopes: FloatArray  # (N, K)
-    limits: FloatArray  # (L,)
-    by_shape: FloatArray  # (L, K)
-    free: FloatArray  # (K,), 0 for what stays
+    about: Generators  # M of them
+    errors: FloatArray  # (M, N)
+    slopes: FloatArray  # (M, N, K), zero by what stays
+    limits: FloatArray  # (M, L)
+    by_shape: FloatArray  # (M, L, K), likewise
 
     @classmethod
-    def of(cls, aim: Aim, generator: Generators) -> _Linear:
-        slopes = generator.slopes(aim.desired.turned)[0]
-        limits = aim.limits(generator)
-        free = np.append(np.ones(generator.UNKNOWNS - 1), 0.0 if aim.held else 1.0)
-        return cls(aim, aim.errors(generator), slopes, limits.value[0], limits.slope[0], free)
+    def of(cls, aim: Aim, about: Generators) -> _Linear:
+        limits, free = aim.limits.of(about), np.ones(about.UNKNOWNS)
+        free[-1] = 0.0 if aim.held else 1.0
+        slopes = about.slopes(aim.desired.turned) * free
+        return cls(aim, about, aim.errors(about), slopes, limits.value, limits.slope * free)
+
+    def some(self, index: BoolArray) -> _Linear:
+        """Some of them."""
+        parts = (each[index] for each in (self.errors, self.slopes, self.limits, self.by_shape))
+        return _Linear(self.aim.some(index), self.about[index], *parts)
 
     @property
-    def finite(self) -> bool:
-        """Whether the output has a rate everywhere: in a dead position it has none."""
-        return bool(np.isfinite(self.slopes).all())
+    def finite(self) -> BoolArray:
+        """Whether the output has a rate everywhere, (M,): in a dead position it has none."""
+        return np.asarray(np.isfinite(self.slopes).all(axis=(1, 2)))
 
-    def step(self, radius: float) -> tuple[FloatArray, float]:
-        """The best step, shape (K,), and the score predicted for it."""
+    def step(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The best steps within radii (M,), shape (M, K), and the scores predicted for them."""
         moved = self._greatest(radius) if self.aim.greatest else self._square(radius)
-        off = self.errors + self.slopes @ moved
-        short = max(0.0, float(-(self.limits + self.by_shape @ moved).min(initial=0.0)))
+        off = self.errors + _times(self.slopes, moved)
         if self.aim.greatest:
-            error = (off.max() - off.min()) / 2
+            error = np.ptp(off, axis=1) / 2
         else:
-            weights = self.aim.desired.weights
-            off = off - weights @ off / weights.sum()
-            error = np.sqrt(weights @ off**2 / weights.sum())
-        if np.isfinite(self.aim.band):
-            short = max(short, float(np.abs(off).max()) - self.aim.band)
-        return moved, float(error) + PRICE * short
+            off = self.aim.desired.centred(off)
+            error = self.aim.sizes(off)
+        return moved, error + PRICE * self.aim.missed(off, self.limits + _times(self.by_shape, moved))
 
-    def best_along(self, generator: Generators, moved: FloatArray) -> tuple[Generators, float]:
-        """Where a step leads, or that step brought back to the errors that it predicted, and the score there.
+    def best_along(self, moved: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Shapes to which steps lead, or these brought back to the errors that they predicted; the scores.
 
         The valleys of these errors are narrow and curved: without the correction (of second order, Fletcher)
         steps along them would have to be tiny.
         """
-        there = generator.changed(generator.shape + moved)
-        best = there, self.aim.score(there)
-        centred = (self.slopes - self.slopes.mean(axis=0)) * self.free
-        predicted = self.errors + self.slopes @ moved
-        scale = float(np.einsum("nk,nk->", centred, centred))
-        normal = centred.T @ centred + 1e-8 * scale * np.eye(generator.UNKNOWNS)
+        shape = self.about.shape + moved
+        score, errors = self.aim.scores(self.about.changed(shape))
+        best, least = shape.copy(), score.copy()
+        centred = self.slopes - self.slopes.mean(axis=1, keepdims=True)
+        predicted = self.errors + _times(self.slopes, moved)
+        scale = np.einsum("mnk,mnk->m", centred, centred)
+        turned = centred.swapaxes(1, 2)
+        normal = turned @ centred + 1e-8 * np.maximum(scale, 1e-280)[:, None, None] * np.eye(shape.shape[1])
+        going = np.arange(len(shape))
         for _ in range(CORRECTIONS):
-            strayed = self.aim.errors(there) - predicted
-            if not np.isfinite(strayed).all():
+            strayed = errors - predicted[going]
+            known = np.isfinite(strayed).all(axis=1)
+            going, strayed = going[known], strayed[known]
+            if not going.size:
                 break
-            back = np.linalg.solve(normal, centred.T @ (strayed - strayed.mean()))
-            there = generator.changed(there.shape - back)
-            score = self.aim.score(there)
-            if not score < best[1]:
-                break
-            best = there, score
-        return best
+            side = _times(turned[going], strayed - strayed.mean(axis=1, keepdims=True))
+            shape[going] -= np.linalg.solve(normal[going], side[..., None])[..., 0]
+            score, errors = self.aim.some(going).scores(self.about[going].changed(shape[going]))
+            better = score < least[going]
+            going, errors = going[better], errors[better]
+            best[going], least[going] = shape[going], score[better]
+        return best, least
 
-    def _greatest(self, radius: float) -> FloatArray:
-        """Linear programme in the step, the zero, the greatest error and the slack."""
-        from scipy.optimize import linprog  # here: few problems need it
+    def _greatest(self, radius: FloatArray) -> FloatArray:
+        """Linear programmes in the step over its radius, the zero, the greatest error and the price paid.
 
-        count, kept, unknowns = len(self.errors), len(self.limits), len(self.free)
-        scale = max(float(np.ptp(self.errors)) / 2, 1e-12)
-        one, none = np.ones((count, 1)), np.zeros((count, 1))
-        over = np.hstack([self.slopes / scale, -one, -one, none])
-        under = np.hstack([-self.slopes / scale, one, -one, none])
-        rows = np.hstack([-self.by_shape, np.zeros((kept, 2)), -np.ones((kept, 1))])
-        right = np.concatenate([-self.errors / scale, self.errors / scale, self.limits])
-        most = radius * self.free
-        bounds = [*zip(-most, most, strict=True), (None, None), (0, None), (0, None)]
-        cost = np.array([0.0] * unknowns + [0.0, 1.0, PRICE / scale])
-        found = linprog(cost, np.vstack([over, under, rows]), right, bounds=bounds, method="highs")
-        return np.zeros(unknowns) if found.x is None else np.asarray(found.x[:unknowns])
+        They begin in the corner of the trust region to which the greatest error falls: there the zero is
+        between the greatest and the least error, and a price is paid for the limit that is missed by most.
+        """
+        (count, samples, unknowns), kept = self.slopes.shape, self.limits.shape[1]
+        scale = np.maximum(np.ptp(self.errors, axis=1) / 2, 1e-12)[:, None]
+        slopes, errors = self.slopes * (radius[:, None] / scale)[..., None], self.errors / scale
+        by_shape = self.by_shape * (PRICE * radius[:, None] / scale)[..., None]
+        rows = np.zeros((count, 2 * (samples + unknowns) + kept + 1, unknowns + 3))
+        over, under, limits, upper, lower = np.split(
+            rows[:, :-1], np.cumsum([samples, samples, kept, unknowns]), axis=1
+        )
+        over[..., :unknowns], under[..., :unknowns], limits[..., :unknowns] = slopes, -slopes, -by_shape
+        over[..., unknowns], under[..., unknowns] = -1.0, 1.0
+        over[..., -2], under[..., -2] = -1.0, -1.0
+        limits[..., -1], rows[:, -1, -1] = -1.0, -1.0
+        upper[..., :unknowns], lower[..., :unknowns] = np.eye(unknowns), -np.eye(unknowns)
+        box = np.ones((count, 2 * unknowns))
+        right = np.concatenate(
+            [-errors, errors, PRICE * self.limits / scale, box, np.zeros((count, 1))], axis=1
+        )
+        each = np.arange(count)
+        ahead = slopes[each, errors.argmax(axis=1)] < slopes[each, errors.argmin(axis=1)]
+        corner = np.where(ahead, 1.0, -1.0)
+        there = errors + _times(slopes, corner)
+        first = 2 * samples + kept
+        short = np.concatenate(
+            [-right[:, 2 * samples : first] - _times(by_shape, corner), np.zeros((count, 1))], axis=1
+        ).argmax(axis=1)
+        worst = np.where(short < kept, 2 * samples + short, rows.shape[1] - 1)
+        at_corner = first + np.arange(unknowns) + unknowns * ~ahead
+        basis = [at_corner, there.argmax(axis=1), samples + there.argmin(axis=1), worst]
+        cost = np.concatenate([np.zeros(unknowns + 1), [1.0, 1.0]])
+        found = least_linear(cost, rows, right, np.column_stack(basis))
+        return np.clip(found[:, :unknowns], -1.0, 1.0) * radius[:, None] * self._free
 
-    def _square(self, radius: float) -> FloatArray:
-        """Least squares in the step and the slack, the zero eliminated, under inequalities."""
-        unknowns = len(self.free)
+    @property
+    def _free(self) -> FloatArray:
+        free = np.ones(self.about.UNKNOWNS)
+        free[-1] = 0.0 if self.aim.held else 1.0
+        return free
+
+    def _square(self, radius: FloatArray) -> FloatArray:
+        """Least squares in the steps and the slacks, the zero eliminated, under inequalities."""
         weights = self.aim.desired.weights / self.aim.desired.weights.sum()
-        root = np.sqrt(weights)
-        centred = self.slopes - weights @ self.slopes
+        centred = self.aim.desired.centred(self.slopes)
+        each = zip(self.errors, centred, self.limits, self.by_shape, radius.tolist(), strict=True)
+        moved = [self._least_square(weights, *one) for one in each]
+        return np.reshape(moved, (-1, self.about.UNKNOWNS)) * self._free
+
+    def _least_square(
+        self,
+        weights: FloatArray,
+        errors: FloatArray,
+        centred: FloatArray,
+        limits: FloatArray,
+        by_shape: FloatArray,
+        radius: float,
+    ) -> FloatArray:
+        """One of these steps, shape (K,)."""
+        unknowns, root = centred.shape[1], np.sqrt(weights)
         damp = 1e-9 * np.linalg.norm(centred * root[:, None]) * np.eye(unknowns)
-        matrix = np.zeros((len(self.errors) + unknowns + 1, unknowns + 1))
-        matrix[: len(self.errors), :unknowns] = centred * root[:, None] * self.free
-        matrix[len(self.errors) : -1, :unknowns] = damp
+        matrix = np.zeros((len(errors) + unknowns + 1, unknowns + 1))
+        matrix[: len(errors), :unknowns] = centred * root[:, None]
+        matrix[len(errors) : -1, :unknowns] = damp
         matrix[-1, -1] = _HEAVY
         side = np.zeros(len(matrix))
-        side[: len(self.errors)] = -self.errors * root
-        rows = np.hstack([self.by_shape, np.ones((len(self.limits), 1))])
-        bounds = -self.limits
+        side[: len(errors)] = -errors * root
+        rows = np.hstack([by_shape, np.ones((len(limits), 1))])
         box = np.hstack([np.vstack([np.eye(unknowns), -np.eye(unknowns)]), np.zeros((2 * unknowns, 1))])
         slack = np.append(np.zeros(unknowns), 1.0)[None]
         inequality = np.vstack([rows, box, slack])
-        least = np.concatenate([bounds, np.full(2 * unknowns, -radius), [0.0]])
+        least = np.concatenate([-limits, np.full(2 * unknowns, -radius), [0.0]])
         if np.isfinite(self.aim.band):
-            band = self.aim.band
-            inequality = np.vstack([
-                inequality,
-                np.hstack([-centred, np.ones((len(centred), 1))]),
-                np.hstack([centred, np.ones((len(centred), 1))]),
-            ])  # fmt: skip
-            least = np.concatenate([least, self.errors - band, -self.errors - band])
+            band, one = self.aim.band, np.ones((len(centred), 1))
+            inequality = np.vstack([inequality, np.hstack([-centred, one]), np.hstack([centred, one])])
+            least = np.concatenate([least, errors - band, -errors - band])
         found = under_inequalities(matrix, side, inequality, least)
-        return np.clip(found[:unknowns], -radius, radius) * self.free
+        return np.clip(found[:unknowns], -radius, radius)
+
+
+def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    product: FloatArray = (matrices @ vectors[..., None])[..., 0]
+    return product
 
 
 def under_inequalities(
@@ -243,12 +316,19 @@ def under_inequalities(
     return found
 
 
-def with_extremes(aim: Aim, generator: Generators, turned: FloatArray, output: FloatArray) -> Aim:
-    """The same aim with samples where a generator errs most on a dense grid, shape (K,) each."""
-    off = (generator.outputs(turned) - output)[0]
-    inner = np.flatnonzero((off[1:-1] - off[:-2]) * (off[2:] - off[1:-1]) <= 0) + 1
-    at = np.concatenate([aim.desired.turned, turned[inner]])
-    desired = np.concatenate([aim.desired.output, output[inner]])
-    order = np.unique(at, return_index=True)[1]
-    weights = np.concatenate([aim.desired.weights, np.ones(len(inner))])
-    return replace(aim, desired=DesiredOutput(at[order], desired[order], weights[order]))
+def with_extremes(aim: Aim, batch: Generators, turned: FloatArray, output: FloatArray) -> Aim:
+    """The same aim with samples where generators err most on a dense grid, shape (K,) or (M, K) each."""
+    off = batch.outputs(turned) - output
+    inner = np.zeros(off.shape, dtype=bool)
+    inner[:, 1:-1] = (off[:, 1:-1] - off[:, :-2]) * (off[:, 2:] - off[:, 1:-1]) <= 0
+    count = int(inner.sum(axis=1).max(initial=0))
+    # Those of each first, in their order; where there are fewer, the first place is repeated.
+    at = np.argsort(~inner, axis=1, kind="stable")[:, :count]
+    at = np.where(np.take_along_axis(inner, at, axis=1), at, 0)
+    more = [np.take_along_axis(np.broadcast_to(each, off.shape), at, axis=1) for each in (turned, output)]
+    samples = aim.desired.turned, aim.desired.output
+    known = [np.broadcast_to(each, (len(batch), each.shape[-1])) for each in samples]
+    places, outputs = (np.concatenate(each, axis=1) for each in zip(known, more, strict=True))
+    order = np.argsort(places, axis=1, kind="stable")
+    places, outputs = (np.take_along_axis(each, order, axis=1) for each in (places, outputs))
+    return replace(aim, desired=DesiredOutput(places, outputs, np.ones(places.shape[1])))

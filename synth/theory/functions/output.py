@@ -140,7 +140,7 @@ class Generators(ABC):
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             crank, loop = self._closed(inputs)
             output: FloatArray = self.dyad.output(loop, crank)
-        return output if self.ONE_SENSE else np.unwrap(output, axis=1)
+        return output if self.ONE_SENSE else _unwrapped(output)
 
     def slopes(self, inputs: FloatArray) -> FloatArray:
         """Derivatives of the output by the shape, shape (M, N, K); NaN in dead positions."""
@@ -178,7 +178,7 @@ class Generators(ABC):
         r1, r2, r3, r4 = self.sizes_of(shape)
         sizes = Sizes(r1, r2, r3, r4, limits.shortest < 0 if limits.shortest else r2.value > r1)
         logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, : self.LINKS]], axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             parts = [ratio_rows(logs, limits.caps, self.UNKNOWNS), self._transmission(limits, sizes)]
             if limits.rates is not None:
                 parts.append(self._rate_rows(limits.rates, limits.span))
@@ -322,6 +322,15 @@ class Generators(ABC):
     @abstractmethod
     def at_b(self, output: FloatArray) -> ComplexArray:
         """B at outputs, shape (M, N)."""
+
+
+def _unwrapped(angles: FloatArray) -> FloatArray:
+    """Angles (M, N) without jumps by a turn; most rows have none."""
+    with np.errstate(invalid="ignore"):
+        jumps = (np.abs(np.diff(angles, axis=1)) > np.pi).any(axis=1)
+    if jumps.any():
+        angles[jumps] = np.unwrap(angles[jumps], axis=1)
+    return angles
 
 
 def crank_ratios(rng: np.random.Generator, count: int) -> FloatArray:
