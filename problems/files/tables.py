@@ -25,8 +25,8 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from grashof.problems.values.checks import hint, plain_text
 from grashof.problems.values.errors import ProblemError, listing, shown, shown_key
+from grashof.problems.values.text import hint, plain_text
 
 # Type of a validator's error; its message states the requirement on the value.
 WRONG = "wrong"

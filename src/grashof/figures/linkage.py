@@ -17,8 +17,8 @@ from grashof.figures.shapes import Drawn, placements, shapes_of
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
+from grashof.problems.values.text import near_miss
 from grashof.synth import Result
 from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.numbers import with_unit

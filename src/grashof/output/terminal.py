@@ -19,10 +19,10 @@ from rich.table import Table
 from grashof.output.process import say
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import LENGTHS, having, without_noise
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Quantity, Scope
+from grashof.problems.values.text import counted
 from grashof.problems.values.units import Unit
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal

@@ -21,7 +21,6 @@ from grashof.problems import (
     Task,
 )
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import listing
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text
@@ -30,6 +29,7 @@ from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.task import row_of
+from grashof.problems.values.text import counted
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.designs.efforts import with_parts
