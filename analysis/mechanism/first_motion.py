@@ -7,7 +7,6 @@ from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
-import scipy
 
 from grashof.analysis.mechanism.first_loop import first_loop, first_ranges
 from grashof.problems import Linkage
@@ -108,10 +107,7 @@ class FirstMotion:
         else:
             dn = np.clip(np.tan(half) / self.scale, self.modulus, 1)
             psi = np.arctan2(np.sqrt(1 - dn**2), -np.sqrt(dn**2 - self.modulus**2))
-        turns = np.round(psi / np.pi)
-        sine, cosine = np.sin(psi - np.pi * turns), np.cos(psi - np.pi * turns)
-        part = sine * scipy.special.elliprf(cosine**2, cosine**2 + (self.modulus * sine) ** 2, 1.0)
-        return np.asarray(part / (2 * _quarter_period(self.modulus)) + turns)
+        return _share(psi, self.modulus)
 
 
 def first_motion(linkage: Linkage, start: float, end: float) -> FirstMotion:
@@ -189,19 +185,28 @@ def _quarter_period(modulus: float) -> float:
 
 
 def _means(modulus: float) -> list[tuple[float, float]]:
-    """The arithmetic means from 1 and k', each with half the difference of the two before it."""
-    a, g, half = 1.0, modulus, 0.0
-    found = [(a, half)]
+    """The arithmetic and geometric means from 1 and k' until they are equal."""
+    a, g = 1.0, modulus
+    found = [(a, g)]
     while abs(a - g) > 1e-15 * a:
-        a, g, half = (a + g) / 2, float(np.sqrt(a * g)), (a - g) / 2
-        found.append((a, half))
+        a, g = (a + g) / 2, float(np.sqrt(a * g))
+        found.append((a, g))
     return found
 
 
 def _amplitude(share: FloatArray, modulus: float) -> FloatArray:
     """Jacobi's amplitude at a share of half the period, descending by Landen's transformation."""
-    means = _means(modulus)
-    psi = np.pi * 2 ** (len(means) - 1) * share
-    for a, half in means[:0:-1]:
-        psi = (psi + np.arcsin(half / a * np.sin(psi))) / 2
+    *means, _ = _means(modulus)
+    psi = np.pi * 2 ** len(means) * share
+    for a, g in reversed(means):
+        psi = (psi + np.arcsin((a - g) / (a + g) * np.sin(psi))) / 2
     return np.asarray(psi)
+
+
+def _share(psi: FloatArray, modulus: float) -> FloatArray:
+    """The share of half the period at which the amplitude is psi: the same steps back."""
+    *means, _ = _means(modulus)
+    for a, g in means:  # psi + arctan(g / a tan psi), unwrapped
+        sine, cosine = np.sin(psi), np.cos(psi)
+        psi = 2 * psi + np.arctan2((g - a) * sine * cosine, a * cosine**2 + g * sine**2)
+    return np.asarray(psi / (np.pi * 2 ** len(means)))

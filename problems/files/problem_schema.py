@@ -244,8 +244,8 @@ _WithTask = create_model("_WithTask", __base__=_Heading, **_tables)
 
 
 class _Task(_WithTask):  # type: ignore[misc, valid-type]
-    scene: SceneTable = SceneTable()
-    requirements: RequirementsTable = RequirementsTable()
+    scene: SceneTable = SceneTable.model_construct()
+    requirements: RequirementsTable = RequirementsTable.model_construct()
     driver: DriverTable | None = None
     objective: ObjectiveTable | None = None
 
@@ -253,7 +253,7 @@ class _Task(_WithTask):  # type: ignore[misc, valid-type]
 class ProblemFile(MachineTables, _Task):
     torque: TorqueTable | None = None
     manufacturing: ManufacturingTable | None = None
-    search: SearchTable = SearchTable()
+    search: SearchTable = SearchTable.model_construct()
 
     def value(self) -> Task:
         by_kind: dict[str, Any] = {kind: getattr(self, kind) for kind in TASKS}
