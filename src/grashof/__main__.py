@@ -15,8 +15,12 @@ def main() -> None:
     """Entry point of the `grashof` command."""
     if sys.argv[1:] == ["--help"] and _columns() >= _WIDTH and _help_printed():
         return
+    import atexit
+    import gc
     import signal
 
+    gc.set_threshold(200_000)  # most objects stay: 85 000 of a search are modules, and a scan takes 50 ms
+    atexit.register(gc.freeze)  # a scan at the end takes 0.15 s
     before = signal.getsignal(signal.SIGINT)
     if before is not signal.SIG_IGN:  # as of jobs in the background
         signal.signal(signal.SIGINT, _leave)

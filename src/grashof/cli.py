@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
-import gc
 import os
 import sys
 import traceback
@@ -133,8 +131,6 @@ def main() -> None:
     # Drawings go to files: a backend for windows, or a misspelt one, must not interfere.
     os.environ["MPLBACKEND"] = "agg"
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "1"  # the search for them reads every installed package
-    gc.set_threshold(50_000)  # loaded modules stay: scanning them often takes time
-    atexit.register(gc.freeze)  # a scan at the end takes 0.15 s
     app(prog_name="grashof")
 
 
