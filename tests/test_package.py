@@ -120,6 +120,13 @@ def test_a_run_loads_neither_pandas_nor_trees(tmp_path: Path) -> None:
     assert not loaded & {"matplotlib", "pandas", "scipy.linalg", "scipy.optimize", "scipy.spatial"}
 
 
+@pytest.mark.slow
+def test_a_drawing_loads_no_tables_and_no_solver() -> None:
+    loaded = modules_after("import grashof.figures.files")
+    assert "matplotlib" in loaded
+    assert not loaded & {"casadi", "pandas", "pydantic", "pyarrow", "rich"}
+
+
 def test_the_public_verbs() -> None:
     import grashof
 

@@ -24,7 +24,8 @@ from grashof.problems.values.text import counted
 from grashof.problems.values.units import Unit
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
-from grashof.wording.problem import class_text, error_meaning, goals
+from grashof.wording.numbers import class_text
+from grashof.wording.problem import error_meaning, goals
 from grashof.wording.proof import enclosure_line, enclosures, proof_line
 
 _ROWS = 12
