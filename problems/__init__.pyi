@@ -1,10 +1,6 @@
-from .files.linkage_file import (
-    linkage_catalogue,
-    linkage_text,
-    load_linkage,
-    load_linkage_spec,
-)
-from .files.problem_file import catalogue, load, load_with_text, problem_text
+from .files.linkage_file import load_linkage, load_linkage_spec
+from .files.on_disk import catalogue, linkage_catalogue, linkage_text, problem_text
+from .files.problem_file import load, load_with_text
 from .values.box import Box
 from .values.dynamics.dynamics_spec import DynamicsSpec
 from .values.dynamics.manufacturing import Manufacturing

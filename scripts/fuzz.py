@@ -37,7 +37,8 @@ from grashof.problems.files.linkage_file import load_design
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.specs.linkage_spec import ListedDesign
-from grashof.study.asked import ON_REQUEST, Asked
+from grashof.study.asked import Asked
+from grashof.study.on_request import ON_REQUEST
 from grashof.survey import report_on
 from grashof.synth import Result
 from grashof.synth.search.finder import refuse_unsearchable

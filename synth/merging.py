@@ -11,7 +11,8 @@ from pathlib import Path
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.on_disk import file_text
 from grashof.problems.files.problem_file import problem_of
-from grashof.problems.values.checks import located, plain_text
+from grashof.problems.values.checks import located
+from grashof.problems.values.text import plain_text
 from grashof.synth.proof.provers import bounds_after, bounds_before
 from grashof.synth.results.conclusion import conclude, needless
 from grashof.synth.results.lists import one_list

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
-from grashof.problems.values.checks import readable
+from grashof.problems.values.text import readable
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.poses.atlas import atlas_of, round_of_regions

@@ -79,9 +79,29 @@ def modules_after(statement: str) -> set[str]:
     return set(done.stdout.split())
 
 
-def test_importing_grashof_loads_no_solver_and_no_plots() -> None:
+HEAVY = {"casadi", "jinja2", "matplotlib", "numpy", "pandas", "pydantic", "rich", "scipy", "shapely"}
+
+
+def command_of(*arguments: str) -> str:
+    """A statement that runs the command to its end, without what it prints."""
+    quiet = "contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit)"
+    main = f"sys.argv = {['grashof', *arguments]}\nwith {quiet}:\n    grashof.__main__.main()"
+    return f"import contextlib, io, sys, grashof.__main__\n{main}"
+
+
+def test_importing_grashof_loads_nothing_heavy() -> None:
     loaded = modules_after("import grashof")
-    assert not loaded & {"casadi", "jinja2", "matplotlib", "pandas", "pydantic", "rich", "shapely"}
+    assert not loaded & {*HEAVY, "importlib.metadata", "logging", "re", "typer", "typing"}
+
+
+def test_help_loads_nothing_heavy() -> None:
+    assert not modules_after(command_of("--help")) & {*HEAVY, "re", "typer", "typing"}
+    for arguments in ("solve", "--help"), ("analyse", "--help"), ("--version",):
+        loaded = modules_after(command_of(*arguments))
+        assert "typer" in loaded
+        assert not loaded & HEAVY, arguments
+    # With Typer itself, which checks values by pydantic.
+    assert not modules_after(command_of("problems")) & (HEAVY - {"pydantic"})
 
 
 @pytest.mark.slow
@@ -95,11 +115,16 @@ def test_a_worker_process_loads_only_what_it_solves_with() -> None:
 @pytest.mark.slow
 def test_a_run_loads_neither_pandas_nor_trees(tmp_path: Path) -> None:
     options = ["--starts", "4", "--drawings", "0", "--out", str(tmp_path / "run")]
-    arguments = ["grashof", "solve", "luggage", *options]
-    run = "import contextlib, grashof.cli\nwith contextlib.suppress(SystemExit):\n    grashof.cli.main()"
-    loaded = modules_after(f"import sys\nsys.argv = {arguments}\n{run}")
+    loaded = modules_after(command_of("solve", "luggage", *options))
     assert (tmp_path / "run" / "candidates.csv").stat().st_size > 1000
     assert not loaded & {"matplotlib", "pandas", "scipy.linalg", "scipy.optimize", "scipy.spatial"}
+
+
+@pytest.mark.slow
+def test_a_drawing_loads_no_tables_and_no_solver() -> None:
+    loaded = modules_after("import grashof.figures.files")
+    assert "matplotlib" in loaded
+    assert not loaded & {"casadi", "pandas", "pydantic", "pyarrow", "rich"}
 
 
 def test_the_public_verbs() -> None:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy
 
 from grashof.analysis.mechanism.first_loop import first_loop, first_ranges
 from grashof.problems import Linkage
@@ -38,7 +37,7 @@ class FirstMotion:
 
     Of one linkage or a batch: fields of shape (...) that broadcast against shares. Half angles are counted
     from `centre` (rad); `scale` is c or X and `modulus` the k' of `first_motion`; `first` and `last` are the
-    elliptic integral at both ends, as shares of half its period; `means` (K, ...) and `period` are of
+    elliptic integral at both ends, as shares of half its period; `ratios` (K, ...) and `period` are of
     `_landen`.
     """
 
@@ -50,14 +49,16 @@ class FirstMotion:
     modulus: FloatArray = field(default_factory=lambda: _WHOLE)
     first: FloatArray = field(default_factory=lambda: _ZERO)
     last: FloatArray = field(default_factory=lambda: _WHOLE)
-    means: FloatArray = field(default_factory=lambda: np.empty(0))
+    ratios: FloatArray = field(default_factory=lambda: np.empty(0))
     period: FloatArray = field(default_factory=lambda: _WHOLE)
 
     def __getitem__(self, index: Any) -> FirstMotion:
         """Some of a batch, or with further axes, as of an array."""
         index = index if isinstance(index, tuple) else (index,)
-        picked = {each.name: getattr(self, each.name)[index] for each in fields(self) if each.name != "means"}
-        return FirstMotion(**picked, means=self.means[(slice(None), *index)])
+        picked = {
+            each.name: getattr(self, each.name)[index] for each in fields(self) if each.name != "ratios"
+        }
+        return FirstMotion(**picked, ratios=self.ratios[(slice(None), *index)])
 
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
         """Driver angle (...) in rad at shares, which may exceed [0, 1] where the driver turns fully."""
@@ -91,10 +92,12 @@ class FirstMotion:
             return formula(self, _Swing(kinds[0]), values)
         shape = np.broadcast_shapes(self.swing.shape, values.shape)
         swing, values = np.broadcast_to(self.swing, shape), np.broadcast_to(values, shape)
-        means = np.moveaxis(np.broadcast_to(np.moveaxis(self.means, 0, -1), (*shape, len(self.means))), -1, 0)
-        names = [each.name for each in fields(self) if each.name != "means"]
+        ratios = np.moveaxis(
+            np.broadcast_to(np.moveaxis(self.ratios, 0, -1), (*shape, len(self.ratios))), -1, 0
+        )
+        names = [each.name for each in fields(self) if each.name != "ratios"]
         every = {name: np.broadcast_to(getattr(self, name), shape) for name in names}
-        whole, found = FirstMotion(**every, means=means), np.empty(shape)
+        whole, found = FirstMotion(**every, ratios=ratios), np.empty(shape)
         for kind in kinds:
             rows = swing == kind
             found[rows] = formula(whole[rows], _Swing(kind), values[rows])
@@ -136,10 +139,17 @@ class FirstMotion:
 
     def _amplitude(self, t: FloatArray) -> FloatArray:
         """Jacobi's amplitude at shares, descending by Landen's transformation."""
-        psi = np.pi * 2 ** len(self.means) * (self.first + (self.last - self.first) * t)
-        for mean in self.means[::-1]:
-            psi = (psi + np.arcsin(mean * np.sin(psi))) / 2
+        psi = np.pi * 2 ** len(self.ratios) * (self.first + (self.last - self.first) * t)
+        for ratio in self.ratios[::-1]:
+            psi = (psi + np.arcsin((1 - ratio) / (1 + ratio) * np.sin(psi))) / 2
         return np.asarray(psi)
+
+    def _share_at(self, psi: FloatArray) -> FloatArray:
+        """The share of half the period at which the amplitude is psi: the same steps back."""
+        for ratio in self.ratios:  # psi + arctan(ratio tan psi), unwrapped
+            sine, cosine = np.sin(psi), np.cos(psi)
+            psi = 2 * psi + np.arctan2((ratio - 1) * sine * cosine, cosine**2 + ratio * sine**2)
+        return np.asarray(psi / (np.pi * 2 ** len(self.ratios)))
 
     def _integral(self, swing: _Swing, theta2: FloatArray) -> FloatArray:
         """Elliptic integral at driver angles, as a share of half its period."""
@@ -154,10 +164,7 @@ class FirstMotion:
         else:
             dn = np.clip(np.tan(half) / self.scale, self.modulus, 1)
             psi = np.arctan2(np.sqrt(1 - dn**2), -np.sqrt(dn**2 - self.modulus**2))
-        turns = np.round(psi / np.pi)
-        sine, cosine = np.sin(psi - np.pi * turns), np.cos(psi - np.pi * turns)
-        part = sine * scipy.special.elliprf(cosine**2, cosine**2 + (self.modulus * sine) ** 2, 1.0)
-        return np.asarray(part / (2 * self.period) + turns)
+        return self._share_at(psi)
 
 
 def first_motion(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike) -> FirstMotion:
@@ -190,8 +197,8 @@ def first_motion(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike) -> 
     mirrored = (swing == _Swing.BESIDE) & (start + end < 2 * centre)
     size = np.where(swing == _Swing.TURNS, c, np.where(mirrored, -x, x))
     modulus, size = np.where(plain, 1.0, modulus), np.where(plain, 1.0, size)
-    means, period = _landen(modulus)
-    motion = FirstMotion(start, end, swing, centre, size, modulus, means=means, period=period)
+    ratios, period = _landen(modulus)
+    motion = FirstMotion(start, end, swing, centre, size, modulus, ratios=ratios, period=period)
     first, last = (motion._by_swing(FirstMotion._integral, each) for each in (start, end))
     return replace(motion, first=first, last=np.where(plain, 1.0, last))
 
@@ -233,13 +240,12 @@ def _home(
 
 
 def _landen(modulus: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Quotients of Landen's transformation from k', (K, ...), and a quarter of the period, (...).
+    """Ratios of the geometric to the arithmetic means from 1 and k', (K, ...), and a quarter of the period.
 
-    By the arithmetic-geometric mean from 1 and k'; a quotient is zero once it has converged.
+    A ratio is 1 once the means have converged: such a step of Landen's transformation only doubles.
     """
     a, g, found = np.ones(np.shape(modulus)), np.asarray(modulus), list[FloatArray]()
     while (apart := np.abs(a - g) > 1e-15 * a).any():
-        mean, half = (a + g) / 2, (a - g) / 2
-        found.append(np.where(apart, half / mean, 0.0))
-        a, g = np.where(apart, mean, a), np.where(apart, np.sqrt(a * g), g)
+        found.append(np.where(apart, g / a, 1.0))
+        a, g = np.where(apart, (a + g) / 2, a), np.where(apart, np.sqrt(a * g), g)
     return np.array(found).reshape(len(found), *np.shape(modulus)), np.pi / 2 / a

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from itertools import groupby
 
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import unquote
 
-from grashof.problems.values.checks import file_name
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.text import file_name
 
 MARK = "design="  # in the fragment of the address, before the packed problem and design
 _MOST_BYTES = 1_000_000  # unpacked

@@ -13,8 +13,15 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.files.design_link import SharedDesign, is_link, read_link
-from grashof.problems.files.on_disk import MOST_BYTES_MADE, Catalogue, document_of, exists, file_text
-from grashof.problems.files.problem_file import catalogue, problem_of
+from grashof.problems.files.on_disk import (
+    LINKAGES,
+    MOST_BYTES_MADE,
+    catalogue,
+    document_of,
+    exists,
+    file_text,
+)
+from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown
@@ -24,8 +31,8 @@ from grashof.problems.values.linkages.mechanism import MECHANISMS, WORDS
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR, mechanism
 from grashof.problems.values.specs.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.specs.problem import Problem
+from grashof.problems.values.text import readable
 
-_LINKAGES = Catalogue("linkage", ("linkages",))
 _LAST_RANK = 10**9
 _VERSION = r"[0-9A-Za-z.+!_-]{1,40}"
 
@@ -78,7 +85,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
         raise ProblemError(f"{text}: is a list of designs; name one of them, such as {text}#1")
     if isinstance(linkage, str) and text in catalogue() and not exists(text):
         raise ProblemError(_problem_given(text, text))
-    return linkage_spec_of(*_LINKAGES.read(linkage))
+    return linkage_spec_of(*LINKAGES.read(linkage))
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -88,7 +95,7 @@ def load_design(path: Path, which: str) -> ListedDesign:
         return ListedDesign(
             spec=spec,
             rank=_rank(design["rank"]),
-            id=checks.readable(str(design["id"])),
+            id=readable(str(design["id"])),
             theta2=tuple(
                 checks.number_within(angle, -checks.GREATEST, checks.GREATEST, "theta2")
                 for angle in design["theta2"]
@@ -101,33 +108,6 @@ def load_design(path: Path, which: str) -> ListedDesign:
         raise ProblemError(
             f"{path}#{which}: states no targets; it must be a candidates.json of grashof solve"
         ) from None
-
-
-def linkage_catalogue() -> tuple[str, ...]:
-    """Names of the linkages shipped with the package, sorted.
-
-    Examples
-    --------
-    >>> linkage_catalogue()
-    ('crank-shaper', 'dwell-six-bar', 'engine', 'klann', 'lufkin-c912d', 'luggage-report', 'pumpjack')
-    """
-    return _LINKAGES.names
-
-
-def linkage_text(name: str) -> str:
-    """Linkage of the catalogue as TOML, to copy and change.
-
-    Raises
-    ------
-    ProblemError
-        No linkage of the catalogue has this name.
-
-    Examples
-    --------
-    >>> print(linkage_text("pumpjack").splitlines()[3])
-    length_unit = "m"
-    """
-    return _LINKAGES.text(name)
 
 
 def _problem_given(given: str, name: str) -> str:
@@ -181,7 +161,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
             raise ProblemError(f"has no design {which or '(none named)'}; {hint}")
         design = designs[ranks[which]]
         # JSON can spell values that no file can.
-        heading = {key: checks.readable(x) if isinstance(x, str) else x for key, x in heading.items()}
+        heading = {key: readable(x) if isinstance(x, str) else x for key, x in heading.items()}
         spec, direction = _design(design, heading | {"dynamics": content.get("dynamics", {})}, path)
     problem = _listed_problem(content, path)
     dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
@@ -203,12 +183,12 @@ def _design(design: dict[str, Any], document: dict[str, Any], path: Path) -> tup
     except (KeyError, TypeError):
         raise ProblemError(f"states no linkage and direction; the keys are {', '.join(keys)}") from None
     cylinder = _cylinder(design.get("cylinder"))
-    name = checks.readable(f"{path.parent.name or path.stem}-{design['rank']}")
+    name = readable(f"{path.parent.name or path.stem}-{design['rank']}")
     spec = linkage_from({**document, "mechanism": kind, **as_document(stated)}, name)
     angles = {key: np.asarray(checks.finite_number(angle, key)) for key, angle in turned.items()}
     if direction not in (1, -1):
         raise ProblemError(f"direction is {shown(direction)}; it must be +1 or -1")
-    title, source = f"{spec.title}: design {design['rank']}", checks.readable(str(path))
+    title, source = f"{spec.title}: design {design['rank']}", readable(str(path))
     linkage = spec.linkage.changed(**angles)
     return replace(spec, linkage=linkage, title=title, source=source, cylinder=cylinder), direction
 
@@ -256,7 +236,7 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
     wrong = f"{shown(text)} is not text"
     if isinstance(text, str):
         try:
-            return problem_of(text, "problem_toml", checks.readable(str(content.get("problem", path.stem))))
+            return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
         except ProblemError as error:
             wrong = str(error).splitlines()[0]
     writer = content.get("grashof")

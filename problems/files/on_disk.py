@@ -21,8 +21,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from grashof.problems.values.checks import hint, readable
 from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.text import hint, readable
 
 MOST_BYTES = 4 * 2**20  # of files that people write or draw
 MOST_BYTES_MADE = 256 * 2**20  # of those that this program writes
@@ -46,6 +46,12 @@ class Catalogue:
             raise ProblemError(f"{shown(name)} is not a {self.what} of the catalogue; {self.hint(name)}")
         return self._files[name].read_text(encoding="utf-8")
 
+    @property
+    def titles(self) -> dict[str, str]:
+        """The title of each, by its name, without checking the rest of its file."""
+        texts = {name: file.read_text(encoding="utf-8") for name, file in sorted(self._files.items())}
+        return {name: str(document_of(text, name)["title"]) for name, text in texts.items()}
+
     def hint(self, name: str) -> str:
         """The likely name in place of one that is not there."""
         return hint(name, self.names, f"the catalogue has {', '.join(self.names)}")
@@ -68,6 +74,64 @@ class Catalogue:
         data = resources.files("grashof.problems") / "data"
         files = (file for folder in self.folders for file in (data / folder).iterdir())
         return {Path(file.name).stem: file for file in files if file.name.endswith(".toml")}
+
+
+PROBLEMS = Catalogue("problem", ("", "practice"))
+LINKAGES = Catalogue("linkage", ("linkages",))
+
+
+def catalogue() -> tuple[str, ...]:
+    """Names of the problems shipped with the package, sorted.
+
+    Examples
+    --------
+    >>> "luggage" in catalogue()
+    True
+    """
+    return PROBLEMS.names
+
+
+def problem_text(name: str) -> str:
+    """Problem of the catalogue as TOML, to copy and change.
+
+    Raises
+    ------
+    ProblemError
+        No problem of the catalogue has this name.
+
+    Examples
+    --------
+    >>> print(problem_text("luggage").splitlines()[1])
+    kind = "motion"
+    """
+    return PROBLEMS.text(name)
+
+
+def linkage_catalogue() -> tuple[str, ...]:
+    """Names of the linkages shipped with the package, sorted.
+
+    Examples
+    --------
+    >>> linkage_catalogue()
+    ('crank-shaper', 'dwell-six-bar', 'engine', 'klann', 'lufkin-c912d', 'luggage-report', 'pumpjack')
+    """
+    return LINKAGES.names
+
+
+def linkage_text(name: str) -> str:
+    """Linkage of the catalogue as TOML, to copy and change.
+
+    Raises
+    ------
+    ProblemError
+        No linkage of the catalogue has this name.
+
+    Examples
+    --------
+    >>> print(linkage_text("pumpjack").splitlines()[3])
+    length_unit = "m"
+    """
+    return LINKAGES.text(name)
 
 
 def looks_like_path(text: str) -> bool:

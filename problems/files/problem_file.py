@@ -1,15 +1,13 @@
-"""Problem files: the catalogue shipped with the package, and the user's own."""
+"""Problem files, of the catalogue shipped with the package and the user's own."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
 
-from grashof.problems.files.on_disk import Catalogue, document_of
+from grashof.problems.files.on_disk import PROBLEMS, document_of
 from grashof.problems.values.checks import located_in
 from grashof.problems.values.specs.problem import Problem
-
-_PROBLEMS = Catalogue("problem", ("", "practice"))
 
 
 def load(problem: str | os.PathLike[str]) -> Problem:
@@ -45,35 +43,8 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
     >>> text == problem_text("luggage")
     True
     """
-    text, file_name, name, folder = _PROBLEMS.read(problem)
+    text, file_name, name, folder = PROBLEMS.read(problem)
     return problem_of(text, file_name, name, folder), text
-
-
-def catalogue() -> tuple[str, ...]:
-    """Names of the problems shipped with the package, sorted.
-
-    Examples
-    --------
-    >>> "luggage" in catalogue()
-    True
-    """
-    return _PROBLEMS.names
-
-
-def problem_text(name: str) -> str:
-    """Problem of the catalogue as TOML, to copy and change.
-
-    Raises
-    ------
-    ProblemError
-        No problem of the catalogue has this name.
-
-    Examples
-    --------
-    >>> print(problem_text("luggage").splitlines()[1])
-    kind = "motion"
-    """
-    return _PROBLEMS.text(name)
 
 
 def problem_of(text: str, file_name: str, name: str, folder: Path | None = None) -> Problem:

@@ -16,7 +16,7 @@ from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.named_files import with_files
 from grashof.problems.files.place_schema import Place
 from grashof.problems.files.task_schema import TASKS, Corners, Pair, SceneTable
-from grashof.problems.values.checks import near_miss, noted, refused
+from grashof.problems.values.checks import noted, refused
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.dynamics.wanted_torque import ROW, WantedTorque
@@ -31,6 +31,7 @@ from grashof.problems.values.requirements.requirements import LIMITS, Requiremen
 from grashof.problems.values.requirements.target_limits import TOGGLE, TargetLimits
 from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.text import near_miss
 
 
 def problem_from(document: dict[str, Any], name: str, folder: Path | None = None) -> Problem:
@@ -243,8 +244,8 @@ _WithTask = create_model("_WithTask", __base__=_Heading, **_tables)
 
 
 class _Task(_WithTask):  # type: ignore[misc, valid-type]
-    scene: SceneTable = SceneTable()
-    requirements: RequirementsTable = RequirementsTable()
+    scene: SceneTable = SceneTable.model_construct()
+    requirements: RequirementsTable = RequirementsTable.model_construct()
     driver: DriverTable | None = None
     objective: ObjectiveTable | None = None
 
@@ -252,7 +253,7 @@ class _Task(_WithTask):  # type: ignore[misc, valid-type]
 class ProblemFile(MachineTables, _Task):
     torque: TorqueTable | None = None
     manufacturing: ManufacturingTable | None = None
-    search: SearchTable = SearchTable()
+    search: SearchTable = SearchTable.model_construct()
 
     def value(self) -> Task:
         by_kind: dict[str, Any] = {kind: getattr(self, kind) for kind in TASKS}

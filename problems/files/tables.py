@@ -25,8 +25,8 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from grashof.problems.values.checks import hint, plain_text
 from grashof.problems.values.errors import ProblemError, listing, shown, shown_key
+from grashof.problems.values.text import hint, plain_text
 
 # Type of a validator's error; its message states the requirement on the value.
 WRONG = "wrong"
@@ -45,7 +45,8 @@ _WANTED = {
 class Table(BaseModel):
     """A table of a file. Its value type is built once here, so that errors of it are reported, too."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    # Deferred, so that the checks of a table are made once, as part of those of its file.
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, defer_build=True)
     # Whether a misplaced key may be reported as belonging to this table.
     suggested: ClassVar[bool] = True
     # Types whose docstrings describe keys, besides that of the table and of the value that it makes.

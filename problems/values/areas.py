@@ -15,8 +15,9 @@ import numpy.typing as npt
 import shapely
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import GREATEST, counted, each_checked, finite_rows
+from grashof.problems.values.checks import GREATEST, each_checked, finite_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.text import counted
 
 _STEPS = 400  # least number of steps along a line at which its depth is measured
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area

@@ -11,8 +11,9 @@ import numpy.typing as npt
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
-from grashof.problems.values.checks import GREATEST, counted, finite_rows
+from grashof.problems.values.checks import GREATEST, finite_rows
 from grashof.problems.values.errors import ProblemError, listing, wrong_value
+from grashof.problems.values.text import counted
 from grashof.problems.values.value_bases import set_fields
 
 Corner: TypeAlias = tuple[float, float]

@@ -1,9 +1,6 @@
 """Grashof finds planar linkages that do a job, proves that they do it, and ranks them."""
 
-import logging
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
+TYPE_CHECKING = False  # as in `typing`, which takes as long to load as Python itself
 if TYPE_CHECKING:
     from grashof.figures import (
         animate,
@@ -29,10 +26,6 @@ __all__ = [
     "track",
 ]
 
-logging.getLogger(__name__).addHandler(
-    logging.NullHandler()
-)  # the program that imports it decides about logging
-
 # Loaded on first use: `import grashof.analysis` must not pay for, or depend on, CasADi.
 _HOMES = {
     "GrashofError": "problems",
@@ -43,9 +36,12 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
+    from importlib import import_module
+
     if name in _HOMES:
-        return getattr(import_module(f"grashof.{_HOMES[name]}"), name)
+        found: object = getattr(import_module(f"grashof.{_HOMES[name]}"), name)
+        return found
     raise AttributeError(f"module 'grashof' has no attribute {name!r}")
 
 

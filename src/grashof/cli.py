@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import atexit
-import gc
 import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
-from importlib.metadata import version
 from inspect import Signature, signature
 from typing import Annotated, Any, get_type_hints
 
@@ -21,7 +18,7 @@ from grashof import commands, searches
 from grashof.options import JSON, parameters
 from grashof.output.document import Document, print_document
 from grashof.output.process import TRACEBACK, ExitCode, failure, say
-from grashof.problems import ProblemError, SolverError
+from grashof.problems.values.errors import ProblemError, SolverError
 
 # Typer makes the base of its usage errors public only through this one.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -58,6 +55,7 @@ app = typer.Typer(
     cls=_Commands,
     help="Find planar four-bar and six-bar linkages that do a job, verify them, and rank them.",
     no_args_is_help=True,
+    add_help_option=False,
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -66,7 +64,15 @@ app = typer.Typer(
 
 def _print_version(wanted: bool) -> None:
     if wanted:
+        from importlib.metadata import version
+
         say(f"grashof {version('grashof')}")
+        raise typer.Exit
+
+
+def _print_help(context: typer.Context, wanted: bool) -> None:
+    if wanted:
+        say(context.get_help())
         raise typer.Exit
 
 
@@ -74,6 +80,10 @@ def _print_version(wanted: bool) -> None:
 def grashof(
     _version: Annotated[
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print it and exit.")
+    ] = False,
+    # Typer's own has None as value where it is absent, and loads pydantic to check that.
+    _help: Annotated[
+        bool, typer.Option("--help", callback=_print_help, is_eager=True, help="Show this message and exit.")
     ] = False,
 ) -> None:
     """The command without a subcommand."""
@@ -120,8 +130,7 @@ def main() -> None:
     """Entry point of the `grashof` command."""
     # Drawings go to files: a backend for windows, or a misspelt one, must not interfere.
     os.environ["MPLBACKEND"] = "agg"
-    gc.set_threshold(50_000)  # loaded modules stay: scanning them often takes time
-    atexit.register(gc.freeze)  # a scan at the end takes 0.15 s
+    os.environ["PYDANTIC_DISABLE_PLUGINS"] = "1"  # the search for them reads every installed package
     app(prog_name="grashof")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import webbrowser
-from collections.abc import Callable, Iterable
 from contextlib import closing, suppress
 from dataclasses import asdict
 from importlib.util import find_spec
@@ -14,6 +13,7 @@ from typing import Annotated
 
 import typer
 
+import grashof.problems
 from grashof.options import (
     AnalyseOptions,
     AnimateOptions,
@@ -25,19 +25,10 @@ from grashof.options import (
 )
 from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, check_writable
 from grashof.output.process import ExitCode, interruptible, say, say_page, say_written
-from grashof.problems import (
-    AssemblyError,
-    ProblemError,
-    SolverError,
-    catalogue,
-    linkage_catalogue,
-    linkage_text,
-    load,
-    load_linkage_spec,
-    problem_text,
-)
 from grashof.problems.files.design_link import is_link
+from grashof.problems.files.on_disk import LINKAGES, PROBLEMS, Catalogue
 from grashof.problems.schema import FileKind
+from grashof.problems.values.errors import AssemblyError, ProblemError, SolverError
 
 
 def check(problem: ProblemName) -> None:
@@ -48,7 +39,7 @@ def check(problem: ProblemName) -> None:
     from grashof.synth.search.finder import refuse_unsearchable
     from grashof.wording.problem import summary
 
-    loaded = load(problem)
+    loaded = grashof.problems.load(problem)
     refuse_unsearchable(loaded)
     notes = [f"note: {note}" for note in (advice(loaded), enclosed(loaded)) if note]
     for line in folded([*summary(loaded), *notes]):
@@ -66,7 +57,7 @@ def prove(problem: ProblemName, options: ProveOptions) -> ExitCode:
     from grashof.synth.proving import has_certificate
     from grashof.wording.proof import bound_line, is_decided, work_line
 
-    loaded = load(problem)
+    loaded = grashof.problems.load(problem)
     with interruptible() as interrupted:
         proof = proven(loaded, **asdict(options), stop=interrupted)
         say(bound_line(proof, options.at_least))
@@ -87,8 +78,8 @@ def judge(linkage: LinkageName, problem: ProblemName) -> ExitCode:
     """
     from grashof.wording.problem import judged_for, verdict_lines
 
-    spec = load_linkage_spec(linkage)
-    judged = judged_for(load(problem), spec)
+    spec = grashof.problems.load_linkage_spec(linkage)
+    judged = judged_for(grashof.problems.load(problem), spec)
     for line in verdict_lines(judged, spec.name):
         say(line)
     return ExitCode.OK if judged.verdict.ok else ExitCode.NO_DESIGN
@@ -112,7 +103,7 @@ def show(
     """
     from grashof.problems.files.linkage_writing import mail_toml
 
-    say(mail_toml(load_linkage_spec(_in_list(linkage, number))).removesuffix("\n"))
+    say(mail_toml(grashof.problems.load_linkage_spec(_in_list(linkage, number))).removesuffix("\n"))
 
 
 def _in_list(given: str, number: str | None) -> str:
@@ -122,7 +113,7 @@ def _in_list(given: str, number: str | None) -> str:
             raise ProblemError(f"NUMBER is {number}; a link has one design")
         return given
     folder = Path(given)
-    listed = folder / "candidates.json" if folder.is_dir() and given not in linkage_catalogue() else folder
+    listed = folder / "candidates.json" if folder.is_dir() and given not in LINKAGES.names else folder
     if listed.suffix == ".json":
         return f"{listed}#{number or 1}"
     if number is not None:
@@ -138,7 +129,7 @@ def problems(
     ] = None,
 ) -> None:
     """List the problems of the catalogue, or print one."""
-    _say_catalogue(name, problem_text, catalogue(), lambda each: load(each).title)
+    _say_catalogue(PROBLEMS, name)
 
 
 def linkages(
@@ -147,7 +138,7 @@ def linkages(
     ] = None,
 ) -> None:
     """List the linkages of the catalogue, or print one."""
-    _say_catalogue(name, linkage_text, linkage_catalogue(), lambda each: load_linkage_spec(each).title)
+    _say_catalogue(LINKAGES, name)
 
 
 def schema(
@@ -159,14 +150,12 @@ def schema(
     say(json.dumps(json_schema(file), indent=1))
 
 
-def _say_catalogue(
-    name: str | None, text: Callable[[str], str], names: Iterable[str], title: Callable[[str], str]
-) -> None:
+def _say_catalogue(catalogue: Catalogue, name: str | None) -> None:
     if name is not None:
-        say(text(name).removesuffix("\n"))
+        say(catalogue.text(name).removesuffix("\n"))
         return
-    for each in names:
-        say(f"{each:20} {title(each)}")
+    for each, title in catalogue.titles.items():
+        say(f"{each:20} {title}")
 
 
 def analyse(linkage: LinkageName, options: AnalyseOptions) -> None:
@@ -175,14 +164,14 @@ def analyse(linkage: LinkageName, options: AnalyseOptions) -> None:
     Exit code 0: done; 2: bad input; 3: environment error.
     """
     from grashof.output.analysis_files import print_report, write_report
-    from grashof.survey import Asked, report_on
+    from grashof.survey import report_on
     from grashof.synth import place_parts
 
-    spec = load_linkage_spec(linkage)
+    spec = grashof.problems.load_linkage_spec(linkage)
     folder = options.out or Path(f"{spec.name}-analysis")
     check_writable(folder, record=ANALYSIS_RECORD)
     try:
-        report = report_on(place_parts(spec), Asked(**options.asked()))
+        report = report_on(place_parts(spec), options.asked())
     except AssemblyError as error:  # lengths so unlike that every position is dead but for rounding
         raise ProblemError(f"{spec.name}: its lengths are too unlike to be analysed: {error}") from None
     files = write_report(folder, report, pictures=options.pictures)
@@ -243,7 +232,7 @@ def animate(linkage: LinkageName, options: AnimateOptions) -> None:
     from grashof.figures.animation import check_animation, save_animation
     from grashof.figures.files import draw_motion
 
-    spec = load_linkage_spec(linkage)
+    spec = grashof.problems.load_linkage_spec(linkage)
     path = options.out or Path(f"{spec.name}.gif")
     check_animation(path)
     save_animation(draw_motion(spec, seconds=options.seconds, fps=options.fps), path)

@@ -19,7 +19,7 @@ from grashof.output.terminal import best_rows, heading, units
 from grashof.problems import Linkage as AnyKind
 from grashof.problems import LinkageSpec, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.synth import Candidate, Result
 from grashof.wording.proof import proof_line
 

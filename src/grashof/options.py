@@ -6,13 +6,16 @@ from dataclasses import dataclass, fields
 from functools import partial
 from inspect import Parameter
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
+from grashof.problems.values.efforts import EFFORTS
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.specs.problem import EFFORTS
-from grashof.study.asked import FIT_POINTS, ON_REQUEST, STEP, Asked
+from grashof.study.on_request import FIT_POINTS, ON_REQUEST, STEP
+
+if TYPE_CHECKING:
+    from grashof.study.asked import Asked
 
 TOP = 50  # families in a list by default
 JSON = "--json"
@@ -163,15 +166,17 @@ class AnalyseOptions:
     ] = None
     release_rpm: Annotated[float | None, _unset("Speed of the driver at the release.")] = None
 
-    def asked(self) -> dict[str, Any]:
-        """The arguments of `Asked`; ProblemError for angles that are not numbers."""
+    def asked(self) -> Asked:
+        """The options as an analysis has them; ProblemError for angles that are not numbers."""
+        from grashof.study.asked import Asked
+
         given = {each.name: getattr(self, each.name) for each in fields(Asked) if hasattr(self, each.name)}
-        return {
-            **given,
+        own: dict[str, Any] = {
             "at_deg": _numbers(self.at, "--at"),
             "sections": ON_REQUEST if self.every else _words(self.with_),
             "release_deg": self.release,
         }
+        return Asked(**given, **own)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import grashof.problems
 from grashof.options import TOP, MergeOptions, ProblemName, SolveOptions, SweepOptions
 from grashof.output.document import Document, documented
 from grashof.output.folder import (
@@ -23,11 +24,12 @@ from grashof.output.folder import (
     part_in_use,
 )
 from grashof.output.process import ExitCode, Interruption, interruptible, say, say_page, say_written
-from grashof.problems import Problem, ProblemError, load_with_text
-from grashof.problems.values.checks import counted
+from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.text import counted
 
 if TYPE_CHECKING:
     from grashof.output.drawing import Drawer
+    from grashof.problems import Problem
     from grashof.synth import Result
     from grashof.synth.results.lists import ReportedDesigns
     from grashof.synth.search.run import Progress
@@ -45,7 +47,7 @@ def solve(problem: ProblemName, options: SolveOptions) -> ExitCode:
     from grashof.output.log_file import logged
 
     with documented(options.json) as document:
-        loaded, text = load_with_text(problem)
+        loaded, text = grashof.problems.load_with_text(problem)
         folder = options.out or Path(f"{loaded.name}-designs")
         if options.shard is not None:
             return _solve_shard(loaded, text, options.shard, options, folder)

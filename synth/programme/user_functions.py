@@ -15,9 +15,9 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of, one_at_a_time
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.specs.problem import NO_OBJECTIVE
+from grashof.problems.values.text import counted
 from grashof.synth.programme.start import Proposal, Start
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem

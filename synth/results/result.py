@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from grashof.problems import NoSolutionError, Problem
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.problems.values.value_bases import Displayed
 from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.proof.claims.proof import Proof

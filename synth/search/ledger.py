@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.problems import Problem, Search
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.start import Proposal, Round, Start

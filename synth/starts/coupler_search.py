@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from grashof.problems import ProblemError, Requirements
-from grashof.problems.values.checks import counted
 from grashof.problems.values.tasks.motion_task import ANGLES_ALONE
+from grashof.problems.values.text import counted
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened

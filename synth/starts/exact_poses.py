@@ -15,7 +15,7 @@ import numpy as np
 
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import ComplexArray
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.scaled_problem import ScaledProblem

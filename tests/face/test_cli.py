@@ -11,10 +11,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from command_runs import Grashof, assert_one_line, failing
+from command_runs import COMMAND, Grashof, assert_one_line, failing
 from refusals import rows
 
-from grashof.problems import linkage_catalogue, linkage_text, problem_text
+from grashof.problems import catalogue, linkage_catalogue, linkage_text, load, problem_text
 
 BAD = rows(r"""
 poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]] | poses = [[5, 4, 0]] | two or more
@@ -84,6 +84,35 @@ def test_help_is_no_error(grashof: Grashof) -> None:
     assert "Usage" in grashof().output
 
 
+def test_the_help_kept_as_text_is_that_of_the_commands(tmp_path: Path) -> None:
+    def printed(command: list[str], **environment: str) -> str:
+        done = subprocess.run(
+            [*command, "--help"],
+            cwd=tmp_path, env={**os.environ, "COLUMNS": "80", **environment},
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        return done.stdout
+
+    # To write src/grashof/help.txt again: COLUMNS=80 python -c "from grashof.cli import main; main()" --help
+    assert printed([sys.executable, "-m", "grashof"]) == printed(COMMAND)
+    narrow = printed([sys.executable, "-m", "grashof"], COLUMNS="60")
+    assert max(map(len, narrow.splitlines())) <= 60
+    assert narrow.split()[:4] == printed(COMMAND).split()[:4]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a disk that is full")
+def test_help_that_cannot_be_written_is_one_line() -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "grashof", "--help"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (3, "grashof: standard output: No space left on device\n")
+
+
 def test_check_and_problems(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("check", "luggage")
     assert done.exit_code == 0
@@ -95,7 +124,8 @@ def test_check_and_problems(grashof: Grashof, tmp_path: Path) -> None:
         "full-crank",
     ):
         assert said in done.stdout
-    assert "luggage" in grashof("problems").stdout
+    listed = [line.split(maxsplit=1) for line in grashof("problems").stdout.splitlines()]
+    assert [tuple(line) for line in listed] == [(name, load(name).title) for name in catalogue()]
     text = grashof("problems", "luggage").stdout
     (tmp_path / "copy.toml").write_text(text, encoding="utf-8")
     assert grashof("check", "copy.toml").exit_code == 0

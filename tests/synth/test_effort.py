@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from grashof.problems import Problem, load
-from grashof.problems.files.on_disk import document_of
-from grashof.problems.files.problem_file import problem_text
+from grashof.problems.files.on_disk import document_of, problem_text
 from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import synthesize
 from grashof.synth.programme import nonlinear_programme

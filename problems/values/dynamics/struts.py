@@ -15,6 +15,7 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.dynamics.load_specs import ANY_JOINTS
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.region import Region
+from grashof.problems.values.text import plain_text
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 BODY = "body"
@@ -113,7 +114,7 @@ class PartSize(TableValue):
 
     def __post_init__(self) -> None:
         numbers = (*STRAIGHT_KEYS, *TORSION_KEYS, "friction")
-        check_fields(self, name=checks.plain_text, **dict.fromkeys(numbers, checks.from_zero))
+        check_fields(self, name=plain_text, **dict.fromkeys(numbers, checks.from_zero))
         checks.number_within(self.turn_deg, 0.0, _TURN / 2, "turn_deg")
         if self.stroke >= self.extended > 0:
             raise ProblemError(

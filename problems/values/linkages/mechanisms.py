@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from grashof.problems.values.checks import each_checked, hint, refuse
+from grashof.problems.values.checks import each_checked, refuse
 from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import (
@@ -19,6 +19,7 @@ from grashof.problems.values.linkages.mechanism import (
 )
 from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
+from grashof.problems.values.text import hint
 
 FOUR_BAR, SLIDER_CRANK, INVERTED = ONE_LOOP
 ROWS = {word: tuple(row for row in MECHANISMS if row.word == word) for word in WORDS}

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import hint, number_within
+from grashof.problems.values.checks import number_within
 from grashof.problems.values.errors import ProblemError, shown_key
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import OF_SLIDES, Quantity
+from grashof.problems.values.text import hint
 from grashof.problems.values.value_bases import set_fields
 
 _HEAVIEST = 1e9

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from grashof.problems.values.checks import counted, with_article
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import OVER, SLIDE_KEYS, TURNING
 from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.text import counted, with_article
 
 # Keys of a slide in place of those of a pin.
 _INSTEAD = {

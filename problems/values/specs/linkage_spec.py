@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from grashof.problems.values.checks import plain_text, refuse
+from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
 from grashof.problems.values.errors import ProblemError
@@ -13,6 +13,7 @@ from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.specs.problem import Problem
+from grashof.problems.values.text import plain_text
 from grashof.problems.values.value_bases import Displayed, check_fields
 
 

@@ -14,6 +14,7 @@ from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres, reference_torque
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.dynamics.wanted_torque import WantedTorque
+from grashof.problems.values.efforts import EFFORTS
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanisms import (
@@ -40,6 +41,7 @@ from grashof.problems.values.specs import torque_limits
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.specs.needs import NEEDED, NO_OUTPUT, OF_OUTPUTS
 from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.text import counted, plain_text
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly, check_fields, set_fields
 
@@ -48,7 +50,6 @@ NO_OBJECTIVE = (
     "objective is of no effect in least squares; it needs within (zones about the targets) or "
     "requirements.error_factor"
 )
-EFFORTS = (0.2, 10_000.0)
 MOST_TARGETS = 10_000
 # Of inverted slider-cranks: with offset 0 the transmission angle is 90 deg, and size decides.
 SMALLEST = Objective(transmission=1.0, compactness=0.05)
@@ -142,7 +143,7 @@ class Problem(ReadOnly):
             raise ProblemError(f"the task has {len(self.task)} targets; it must have at most {MOST_TARGETS}")
         set_fields(self, requirements=self.requirements.for_task(self.task))
         set_fields(self, task=grounded(self.task, self.requirements))
-        check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
+        check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), plain_text))
         given = mechanisms(self.mechanism or self.task.usual_mechanism)
         set_fields(self, mechanism=spelt_out(given, self._unsuited))
         checks.refuse([line for word in self.mechanism if (line := Task.impossible(self.task, word))])
@@ -326,9 +327,7 @@ class Problem(ReadOnly):
         return replace(self, task=task, requirements=wanted, objective=objective)
 
     def __repr__(self) -> str:
-        return (
-            f"<Problem {self.name}: {type(self.task).__name__} of {checks.counted(len(self.task), 'target')}>"
-        )
+        return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"
 
     def scale(self, quantity: Quantity) -> float:
         """The unit in which the objective counts a quantity, so that weights are pure numbers.

@@ -9,8 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
-from grashof.problems.values.checks import finite_number, hint, limits, number_within, positive_number
+from grashof.problems.values.checks import finite_number, limits, number_within, positive_number
 from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.text import hint
 from grashof.problems.values.value_bases import ReadOnly, set_fields
 
 LAWS: dict[str, Callable[[FloatArray], FloatArray]] = {

@@ -13,6 +13,7 @@ from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.tasks.generated_output import GeneratedOutput
 from grashof.problems.values.tasks.target_checks import deg_text
+from grashof.problems.values.text import counted
 
 # Keys of files.
 INPUT_DEG, INPUT, OUTPUT_DEG, OUTPUT, RATE = "input_deg", "input", "output_deg", "output", "rate"
@@ -29,15 +30,13 @@ def checked_pairs(
     keys = INPUT if lengthens else INPUT_DEG, OUTPUT if travels else OUTPUT_DEG
     given, output = finite_numbers(inputs, keys[0]), finite_numbers(outputs, keys[1])
     if len(given) != len(output):
-        counts = (
-            checks.counted(len(each), _NOUNS[key]) for key, each in zip(keys, (given, output), strict=True)
-        )
+        counts = (counted(len(each), _NOUNS[key]) for key, each in zip(keys, (given, output), strict=True))
         of_inputs, of_outputs = counts
         raise ProblemError(
             f"function.{keys[0]} has {of_inputs}, function.{keys[1]} {of_outputs}; it must be as many"
         )
     if len(given) < FEWEST:
-        raise ProblemError(f"function has {checks.counted(len(given), 'pair')}; it must have three or more")
+        raise ProblemError(f"function has {counted(len(given), 'pair')}; it must have three or more")
     if len(given) > MOST:
         raise ProblemError(f"function has {len(given)} pairs; it must have at most {MOST}")
     for name, first in ((keys[0], given[0]), (keys[1], output[0])):

@@ -21,6 +21,7 @@ from grashof.problems.values.tasks.target_checks import (
     zone_sizes,
 )
 from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.text import counted, hint
 from grashof.problems.values.value_bases import set_fields
 
 # Where timed poses have no places.
@@ -112,9 +113,7 @@ class MotionTask(Task):
                 f"it must be at most {np.degrees(_MOST_TURNED):.0f} deg, beyond which digits are lost"
             )
         if len(places) < 2:
-            raise ProblemError(
-                f"motion.poses has {checks.counted(len(places), 'pose')}; it must have two or more"
-            )
+            raise ProblemError(f"motion.poses has {counted(len(places), 'pose')}; it must have two or more")
         _refuse_halves(places, turned, timed=timing is not None)
         _refuse_far(places)
         size = checks.task_size(places[~np.isnan(places[:, 0])], "motion.poses")
@@ -188,7 +187,7 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
     if isinstance(pose, Mapping):
         for key in pose:
             if key not in ("x", "y", "angle"):
-                keys = checks.hint(str(key), ("x", "y", "angle"), "the keys are x, y, angle")
+                keys = hint(str(key), ("x", "y", "angle"), "the keys are x, y, angle")
                 raise ProblemError(f"{where}.{shown_key(key)} is unknown; {keys}")
         x, y, angle = (
             checks.finite_number(pose[key], f"{where}.{key}") if key in pose else np.nan
@@ -200,7 +199,7 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
     values = list(pose)
     if len(values) != 3:
         raise ProblemError(
-            f"{where} is {shown(values)}, {checks.counted(len(values), 'number')}; it must be {_POSE}"
+            f"{where} is {shown(values)}, {counted(len(values), 'number')}; it must be {_POSE}"
         )
     for value in values:
         if isinstance(value, float) and not np.isfinite(value):
@@ -225,7 +224,7 @@ def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
         values, f"motion.weights is {shown(values)}; it must be a list of numbers", (1,)
     )
     if len(weights) != count:
-        raise ProblemError(f"motion.weights has {checks.counted(len(weights), 'number')} for {count} poses")
+        raise ProblemError(f"motion.weights has {counted(len(weights), 'number')} for {count} poses")
     least, most = _WEIGHTS
     for index in np.flatnonzero(~((weights >= least) & (weights <= most))):
         raise ProblemError(

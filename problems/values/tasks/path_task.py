@@ -9,14 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.problems.values.checks import (
-    GREATEST,
-    counted,
-    finite_rows,
-    number_within,
-    task_size,
-    true_or_false,
-)
+from grashof.problems.values.checks import GREATEST, finite_rows, number_within, task_size, true_or_false
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.tasks.target_checks import (
     LEAST_ZONE,
@@ -26,6 +19,7 @@ from grashof.problems.values.tasks.target_checks import (
     zone_sizes,
 )
 from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.text import counted
 from grashof.problems.values.value_bases import set_fields
 
 RATIOS = 1.0, 1e6  # of the length of a curve to that of the spline

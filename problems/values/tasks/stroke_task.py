@@ -8,12 +8,13 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import finite_number, noted, refuse, size_number, with_article
+from grashof.problems.values.checks import finite_number, noted, refuse, size_number
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import ONE_LOOP, DyadKind
 from grashof.problems.values.linkages.mechanisms import INVERTED, closing_dyad
 from grashof.problems.values.tasks.output_task import OutputTask
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
+from grashof.problems.values.text import with_article
 from grashof.problems.values.value_bases import set_fields
 
 LEAST_SWING = 1e-3  # rad

@@ -9,11 +9,12 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import counted, finite_number, noted, refuse
+from grashof.problems.values.checks import finite_number, noted, refuse
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
 from grashof.problems.values.tasks.output_task import OF_POINTS, OutputTask
 from grashof.problems.values.tasks.stroke_task import most_ratio, rocker_swing, slow_over_quick
+from grashof.problems.values.text import counted
 from grashof.problems.values.value_bases import set_fields
 
 LINKS = (4, 6)  # that are outputs

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
-from grashof.problems.values.checks import GREATEST, counted, finite_list, number_array
+from grashof.problems.values.checks import GREATEST, finite_list, number_array
 from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.text import counted
 
 LEAST_ZONE = 1e-12  # below, digits are lost
 ANGLES_DEG = (1e-10, 180.0)  # least and greatest zone of an angle

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 from matplotlib.axes import Axes
 
 from grashof.analysis import function_curves
@@ -20,7 +19,11 @@ from grashof.study.kinds import forces_of, turning
 from grashof.study.quantities import by_range, dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
-from grashof.synth import Candidate
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from grashof.synth import Candidate
 
 AxesArray = npt.NDArray[np.object_]
 # Label of the axis of a panel, and the columns of the analysis with their names, for all kinds of linkages.

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -20,8 +20,10 @@ from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem
-from grashof.synth import Candidate
-from grashof.wording.problem import class_text
+from grashof.wording.numbers import class_text
+
+if TYPE_CHECKING:
+    from grashof.synth import Candidate
 
 # Settings of matplotlib. Fixed names inside the SVG and no date: the same design gives the same bytes.
 STYLE: Any = {

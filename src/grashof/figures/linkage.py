@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,11 +17,13 @@ from grashof.figures.shapes import Drawn, placements, shapes_of
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
-from grashof.synth import Result
+from grashof.problems.values.text import near_miss
 from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.numbers import with_unit
+
+if TYPE_CHECKING:
+    from grashof.synth import Result
 
 _NUMBERED = 10  # designs that are labelled with their rank
 

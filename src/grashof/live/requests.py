@@ -10,12 +10,13 @@ from typing import Any, NoReturn
 
 from grashof.problems import Problem, ProblemError, catalogue, load_linkage_spec, load_with_text
 from grashof.problems.files.design_link import is_link, read_link
-from grashof.problems.files.on_disk import document_of
-from grashof.problems.files.problem_file import problem_of, problem_text
+from grashof.problems.files.on_disk import document_of, problem_text
+from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.values.checks import file_name, located_in
+from grashof.problems.values.checks import located_in
 from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.text import file_name
 
 KINDS = ("track", "search", "file", "outline")
 FILES = ("problem", "list", "designs", "report", "dxf", "linkage", "link", "problem-link")

@@ -260,8 +260,7 @@ _JOBS: dict[str, Callable[[Job, Callable[[], bool], Callable[[Line], object]], N
 def warm_up() -> None:
     """Load all modules and caches of a first job."""
     from grashof.problems import load
-    from grashof.problems.files.on_disk import document_of
-    from grashof.problems.files.problem_file import problem_text
+    from grashof.problems.files.on_disk import document_of, problem_text
 
     document = document_of(problem_text("luggage"), "luggage.toml")
     found = synthesize(load("luggage"), enough=2, starts=16)

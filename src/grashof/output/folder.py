@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from grashof.problems import ProblemError
+from grashof.problems.values.errors import ProblemError
 
 if sys.platform != "win32":
     import fcntl

@@ -14,8 +14,8 @@ from types import FrameType
 
 import typer
 
-from grashof.problems import ProblemError, SolverError
-from grashof.problems.values.checks import counted, readable
+from grashof.problems.values.errors import ProblemError, SolverError
+from grashof.problems.values.text import counted, readable
 
 TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: print tracebacks of unexpected errors
 _LAID_OUT = re.compile(r"[^\n\t]+")  # all but line ends and tabs

@@ -23,7 +23,7 @@ from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.output.process import ExitCode, Interruption
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import no_formula
+from grashof.problems.values.text import no_formula
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import LISTED, OWN, Row, facts, known, rows_of, rows_of_nearest
 from grashof.synth.search.history import StopReason, now

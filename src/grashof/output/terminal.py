@@ -12,21 +12,20 @@ from textwrap import TextWrapper
 import numpy as np
 from rich import box
 from rich.console import Console, JustifyMethod
-from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.output.process import say
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import LENGTHS, having, without_noise
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Quantity, Scope
+from grashof.problems.values.text import counted
 from grashof.problems.values.units import Unit
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
-from grashof.wording.problem import class_text, error_meaning, goals
+from grashof.wording.numbers import class_text
+from grashof.wording.problem import error_meaning, goals
 from grashof.wording.proof import enclosure_line, enclosures, proof_line
 
 _ROWS = 12
@@ -46,7 +45,7 @@ _TWO_LINES = ("error rms", "family size")
 
 def console(*, stderr: bool = False) -> Console:
     """A console that does not fold its lines when it is piped, and marks nothing up by itself."""
-    made = Console(stderr=stderr, highlight=False, markup=False)
+    made = Console(stderr=stderr, highlight=False, markup=False, emoji=False)
     if not made.is_terminal:
         made.width = _PIPED_WIDTH
     return made
@@ -64,6 +63,9 @@ def search_progress(
     if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
         yield lambda step: say(f"{name}: {_step(step, wanted)}", err=True)
         return
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
     name_column = TextColumn("{task.description}", markup=False)  # a name such as [x] is not markup
     columns = (name_column, BarColumn(), TextColumn("{task.fields[step]}"))
     with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
@@ -110,7 +112,9 @@ def fitting(tables: Iterable[Table]) -> list[str]:
     """Lines of the first table that fits the terminal, or else of the last; no number is ever cut."""
     width, lines = console().width, list[str]()
     for table in tables:
-        page = Console(file=StringIO(), width=_UNBOUNDED, highlight=False, markup=False, color_system=None)
+        page = Console(
+            file=StringIO(), width=_UNBOUNDED, highlight=False, markup=False, emoji=False, color_system=None
+        )
         with page.capture() as captured:
             page.print(table)
         lines = [line.rstrip() for line in captured.get().splitlines()]

@@ -14,7 +14,7 @@ from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import DRAWING, render
 from grashof.problems import LinkageSpec
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import dimensions_text, number_text, value_text

@@ -11,8 +11,8 @@ from grashof.page.columns import Column, columns_of, figures_of
 from grashof.page.designs import designs_of, legend, loci_of, moves, scene_of
 from grashof.page.render import DRAWING, render
 from grashof.problems import Problem
-from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import ROWS
+from grashof.problems.values.text import counted
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.result import note_parts

@@ -23,8 +23,8 @@ from grashof.sections.places import mass_centres, positions
 from grashof.sections.pumping_unit import pumping_unit
 from grashof.sections.strength import strength
 from grashof.sections.tolerance import tolerance
-from grashof.study.asked import ON_REQUEST
 from grashof.study.kinds import output_turns, plain
+from grashof.study.on_request import ON_REQUEST
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 

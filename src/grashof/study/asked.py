@@ -10,11 +10,8 @@ from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import number_within, positive_number, whole_number
 from grashof.problems.values.errors import wrong_value
+from grashof.study.on_request import FIT_POINTS, ON_REQUEST, STEP
 
-# Long sections, which are made when they are requested by name.
-ON_REQUEST = ("newton-raphson", "differences", "fits", "equations")
-STEP = 0.05  # s, of a history
-FIT_POINTS = 13
 _MOST_ROWS, _MOST_PLACES, _MOST_POINTS = 20_000, 36, 1001
 _MOST_DEGREES = 1e6
 

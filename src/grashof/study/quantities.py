@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from operator import attrgetter
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from grashof.analysis import Kinematics, inverse_dynamics, solve_kinematics, transmission_angle
 from grashof.analysis.mechanism.transmission import quality
@@ -16,6 +16,9 @@ from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.kinds import force_key, forces_of, turning
 from grashof.study.study import LinkageStudy
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Curve = Callable[[Kinematics], FloatArray]
 _DEAD = 1e-7  # rad: transmission angle that rounding of the driver angle leaves in a dead position
@@ -169,6 +172,8 @@ def _ratio(state: Kinematics) -> FloatArray:
 
 def table_of(quantities: list[Quantity], states: list[Kinematics]) -> pd.DataFrame:
     """A row for each driver angle; empty where a quantity has no finite value."""
+    import pandas as pd  # takes as long as all other modules of a drawing
+
     parts = []
     for number, state in enumerate(states, start=1):
         columns = {

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.sweep.combinations import Combination
 from grashof.sweep.study import Study
 from grashof.sweep.task import INVALID

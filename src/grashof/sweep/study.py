@@ -16,16 +16,15 @@ from grashof.problems.files.tables import Table, Text, listed, stated
 from grashof.problems.values.checks import (
     finite_number,
     located,
-    near_miss,
     noted,
     positive_number,
-    readable,
     refuse,
     refused,
     whole_number,
 )
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.specs.problem import Search
+from grashof.problems.values.text import near_miss, readable
 from grashof.sweep.keys import key_parts, overlap
 from grashof.sweep.target_table import NAME, target_rows
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from grashof.problems import CylinderSpec, DynamicsSpec, WantedTorque
-from grashof.problems.values.checks import counted
 from grashof.problems.values.dynamics.effort import EffortSpec
 from grashof.problems.values.dynamics.struts import BODY
 from grashof.problems.values.errors import listing
+from grashof.problems.values.text import counted
 
 FEW_ROWS = 4  # most rows of a wanted torque that a summary states in full
 

@@ -1,13 +1,16 @@
-"""Numbers as people read them in tables, and the lengths of a linkage."""
+"""Numbers as people read them in tables, and the class and lengths of a linkage."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from grashof.problems import LinkageSpec
-from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
+from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text, lengths_text
+
+if TYPE_CHECKING:
+    from grashof.synth import Candidate
 
 
 def value_text(value: float | int | str | bool) -> str:
@@ -49,3 +52,9 @@ def dimensions_text(spec: LinkageSpec) -> str:
     """
     said = [kinds_text([spec.linkage.mechanism.word]), lengths_text(spec.linkage, 6)]
     return f"{', '.join(filter(None, said))} {spec.length_unit}".rstrip()
+
+
+def class_text(candidate: Candidate) -> str:
+    """The Grashof class of a linkage with one loop, otherwise its mechanism."""
+    word = candidate.linkage.mechanism.word
+    return str(candidate.verdict.grashof_class) if has_one_loop(word) else word

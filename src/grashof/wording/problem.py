@@ -21,15 +21,15 @@ from grashof.problems import (
     Task,
 )
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import listing
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text
+from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.task import row_of
+from grashof.problems.values.text import counted
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.designs.efforts import with_parts
@@ -40,7 +40,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.search.finder import asked_first
 from grashof.wording.loads import cylinder_text, effort_text, loads_text, torque_text
-from grashof.wording.numbers import value_text
+from grashof.wording.numbers import class_text, value_text
 
 # Quantities that a verdict reports besides missed requirements, where they have a value.
 _KEYS = (
@@ -322,12 +322,6 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
     stated = None if spec.dynamics is None else spec.dynamics.effort
     known = () if stated is None else stated.parts
     return with_parts(Candidate(spec.linkage, verdict, of, 0, 0), known)
-
-
-def class_text(candidate: Candidate) -> str:
-    """The Grashof class of a linkage with one loop, otherwise its mechanism."""
-    word = candidate.linkage.mechanism.word
-    return str(candidate.verdict.grashof_class) if has_one_loop(word) else word
 
 
 def verdict_lines(candidate: Candidate, name: str) -> list[str]:

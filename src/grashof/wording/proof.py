@@ -7,8 +7,8 @@ from typing import Any
 
 from grashof.analysis.judge.enclosed import find_enclosures
 from grashof.analysis.judge.verdict import Enclosure
-from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import is_of
+from grashof.problems.values.text import counted
 from grashof.synth import Result
 from grashof.synth.proof.claims.proof import Claim, Proof, quantity_of
 

@@ -25,9 +25,9 @@ from grashof.analysis import (
 )
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import LinkageSpec, ProblemError
-from grashof.problems.values.checks import no_formula
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.specs.linkage_spec import ListedDesign
+from grashof.problems.values.text import no_formula
 from grashof.workshop.sheet import printable
 
 if TYPE_CHECKING:

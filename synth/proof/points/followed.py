@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis import solve_position
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.points.boxes import boxes

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.problems import Problem
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.curve.pieces import WIDER, Tubes

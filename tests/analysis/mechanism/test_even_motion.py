@@ -6,6 +6,7 @@ import pytest
 from drawn_linkages import SMOOTH, SWINGING, of_each_class
 from hypothesis import strategies as st
 from scipy.integrate import quad
+from scipy.special import ellipkinc, ellipkm1
 
 from grashof.analysis import (
     DriverLaw,
@@ -18,6 +19,7 @@ from grashof.analysis import (
     transmission_angle,
 )
 from grashof.analysis.mechanism.driver_law import mean_in_time, mean_over
+from grashof.analysis.mechanism.first_motion import FirstMotion, _landen
 from grashof.analysis.mechanism.transmission import quality
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import FourBar
@@ -161,3 +163,22 @@ def test_no_peak_of_a_linkage_that_just_passes_a_dead_position_is_missed(gap: fl
     found = peaks(speed, [driver_samples(linkage, 0.0, 2 * np.pi)])[0]
     near = np.pi + np.concatenate([sign * np.logspace(-9, 0, 40_000) for sign in (-1, 1)])
     assert found == pytest.approx(speed(near).max(), rel=1e-8)
+
+
+@pytest.mark.parametrize("modulus", [1.0, 0.999, 0.5, 1e-2, 1e-6, 1e-9])
+def test_shares_are_elliptic_integrals(modulus: float) -> None:
+    ratios, period = _landen(np.array(modulus))
+    motion = FirstMotion(np.zeros(()), np.ones(()), ratios=ratios, period=period)
+    share = motion._share_at
+    psi, half = np.linspace(-4, 4, 200), 2 * ellipkm1(modulus**2)
+    if modulus < 1e-3:  # F = arsinh tan psi + O(k'^2), away from the dead position
+        low = np.linspace(-1, 1, 50)
+        assert share(low) == pytest.approx(np.arcsinh(np.tan(low)) / half, rel=1e-11)
+    else:
+        assert share(psi) == pytest.approx(ellipkinc(psi, 1 - modulus**2) / half, abs=1e-13)
+    # Two with k' tan psi tan other = 1 are half of it (the addition theorem), beside a dead position, too.
+    close = np.pi / 2 - np.geomspace(1e-12, 1, 50)
+    other = np.arctan2(np.cos(close), modulus * np.sin(close))
+    lost = 2e-16 / max(modulus, 1e-12) / half  # by the rounding of psi
+    assert share(close) + share(other) == pytest.approx(0.5, abs=1e-14 + 4 * lost)
+    assert motion._amplitude(share(psi)) == pytest.approx(psi, abs=1e-13)

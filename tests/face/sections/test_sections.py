@@ -23,7 +23,7 @@ from grashof.problems.values.dynamics.load_specs import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.study.asked import ON_REQUEST
+from grashof.study.on_request import ON_REQUEST
 from grashof.study.section import Section
 from grashof.study.sweep import Sweep
 

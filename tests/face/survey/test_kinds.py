@@ -22,7 +22,7 @@ from grashof.problems import (
     SliderCrank,
     load_linkage_spec,
 )
-from grashof.study.asked import ON_REQUEST
+from grashof.study.on_request import ON_REQUEST
 from grashof.survey import Asked, LinkageReport, report_on
 
 ENGINE, SHAPER = load_linkage_spec("engine"), load_linkage_spec("crank-shaper")

@@ -91,25 +91,3 @@ def test_number_within_includes_its_ends() -> None:
 def test_bad_limits_are_named(pair: tuple[float, float], message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}$"):
         checks.limits(pair, "here", least=0.0)
-
-
-@pytest.mark.parametrize(
-    ("word", "expected"),
-    [("lugage", "luggage"), ("LUGGAGE", "luggage"), ("R1", "r1"), ("wheelbarrow", None), ("", None)],
-)
-def test_near_miss(word: str, expected: str | None) -> None:
-    assert checks.near_miss(word, ["luggage", "r1"]) == expected
-
-
-@pytest.mark.parametrize("character", ["\x00", "\x9b", "\ud800", "\uffff"])
-def test_control_characters_are_refused_or_replaced(character: str) -> None:
-    with pytest.raises(
-        ProblemError, match=rf"^title has control character U\+{ord(character):04X}; it must be"
-    ):
-        checks.plain_text(f"a{character}b", "title")
-    assert checks.readable(f"a{character}b") == "a?b"
-
-
-def test_text_of_all_languages_is_plain() -> None:
-    for text in ("", "Étage \u2082", '階段 <&> "$x$"', "\U0001f9f3"):
-        assert checks.plain_text(text, "title") == checks.readable(text) == text

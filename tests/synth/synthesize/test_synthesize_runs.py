@@ -15,7 +15,7 @@ import pytest
 from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import Box, MotionTask, Problem, ProblemError, Search, SolverError
-from grashof.problems.values.checks import counted
+from grashof.problems.values.text import counted
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.quantities.scaled_problem import ScaledProblem
