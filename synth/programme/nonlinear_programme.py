@@ -38,7 +38,7 @@ from grashof.synth.theory.stopping import StopRequested, raise_if_stopped, stop_
 LONG = 40  # targets: programmes of more can be stopped, and are not begun after a request to stop
 MOST_ITERATIONS = 150
 MENDING = 60  # iterations of a near miss mended in place, which takes a dozen where it succeeds
-PATIENCE = (250, 400)  # iterations where the error is bounded: for trade-offs, and where the user requires it
+PATIENCE = (150, 400)  # iterations where the error is bounded: for trade-offs, and where the user requires it
 SLIGHT = 1e-6  # weight of the error beside the slack
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
 EXCHANGES = 4  # most repetitions of a solve

@@ -81,6 +81,7 @@ class Start:
     expected_error: float = 0.0  # root mean square error of a least-squares search here, limits included
     terms: Terms = field(default_factory=Terms)
     second: SecondLoop | None = None  # of a six-bar: the other fields but P are those of its first loop
+    transmission: float = 0.0  # rad: the worst transmission angle that a solve begins with
 
     @classmethod
     def of_linkage(cls, scaled: ScaledProblem, linkage: Linkage, verdict: Verdict) -> Start:

@@ -69,7 +69,7 @@ class Unknowns:
         found["r"] = _lengths(build, form.kind)
         found["theta1"] = build.unknown("theta1", 1, lambda _, start: start.theta1, always(-LIFTED, LIFTED))
         found["theta2"] = build.unknown("theta2", n, lambda _, start: start.theta2, _first_fixed)
-        found["tau"] = build.unknown("tau", 1, lambda *_: 0.0, _least_transmission)
+        found["tau"] = build.unknown("tau", 1, lambda _, start: start.transmission, _least_transmission)
         found |= dict.fromkeys(("theta3", "arm", "body_angle"), none)
         if not form.poses:
             found["theta3"] = build.unknown("theta3", n, lambda _, start: start.theta3, turns)

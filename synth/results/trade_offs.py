@@ -21,6 +21,8 @@ from grashof.synth.starts.coupler_search import leaves_freedom
 FACTORS = (1.02, 1.2, 1.5, 2.0)  # times the least error, traded for transmission and size
 GOALS = {"mu": Objective(), "size": Objective(transmission=0.0, compactness=1.0)}
 SEEDS = 4  # designs from which solves begin, for each goal
+STRIDE, STRIDES = 0.5, 8  # longest links: greatest move of a pivot in a solve; greatest number of such solves
+AT_EDGE = 0.999  # share of such a move
 MET = 1e-10  # sizes: rounding
 APART = 0.05  # share: seeds that are closer are one
 SLACK = 1e-6  # share of the error: rounding
@@ -50,6 +52,8 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     seeds = seeds_of(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
     surrogate = Surrogate.of(scaled, seeds[0], ledger.least) if seeds else Surrogate(scaled)
     begun_from = [(_error(problem, one), surrogate.taken(one)) for one in seeds]
+    origin = {one.id: (error, one.id) for error, one in begun_from}  # error and seed that led to each design
+    led = dict[tuple[str, float], str]()  # the seed that led to the best at a goal up to some error
     found, attempts, latest = list[Candidate](), list[Attempt](), dict[str, list[Candidate]]()
     factors = FACTORS if ledger.least > same_error(problem) else FACTORS[:1]  # exact but for rounding
     there_and_back = (*factors, *factors[-2::-1])  # designs of much error may lead to better ones of little
@@ -58,18 +62,22 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
             break
         new = [one for error, one in begun_from if before * least < error <= factor * least]
         most = surrogate.most_error(factor * least, problem.task.size)
+        # no way leads back to less error than its seed has, and one that came from here leads back here
         begun = [
-            (goal, started_at(surrogate.scaled, one, objective, most_error=most))
-            for goal, objective in GOALS.items()
+            (goal, one)
+            for goal in GOALS
             for one in (*latest.get(goal, ()), *new)
+            if origin[one.id][0] <= factor * least and origin[one.id][1] != led.get((goal, factor))
         ]
-        made = run.solve(surrogate.scaled, [start for _, start in begun], ledger.solved + len(attempts))
-        attempts += made
+        made = _improved(surrogate.scaled, begun, most, run, ledger.solved + len(attempts))
+        attempts += [one for each in made for one in each]
         for goal in GOALS:
-            mine = zip(begun, made, strict=True)
-            good = [each for (aim, _), one in mine if aim == goal for each in one.verified]
+            mine = [(seed, each) for (aim, seed), each in zip(begun, made, strict=True) if aim == goal]
+            origin |= {each.id: origin[seed.id] for seed, tries in mine for each in _verified(tries)}
+            good = [each for _, tries in mine for each in _verified(tries)]
             every = (*good, *latest.get(goal, ()))
             latest[goal] = _best_at(surrogate, goal, every, factor, most) or latest.get(goal, [])
+            led.update({(goal, factor): origin[one.id][1] for one in latest[goal]})
             found += good if surrogate.is_itself else latest[goal]
     if exact:  # the freedom that targets leave has been used; back onto them
         nearly = [] if run.ended() else [Start.of_linkage(scaled, one.linkage, one.verdict) for one in found]
@@ -82,6 +90,43 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     # of all designs those that no other one beats in every goal, up to twice the least error
     designs = _worth_choosing(problem, [*ledger.verified, *found], least)
     return Chosen(designs, [one for one in attempts if not one.verified], len(attempts))
+
+
+def _improved(
+    scaled: ScaledProblem, begun: Sequence[tuple[str, Candidate]], most: float, run: Run, solved: int
+) -> list[list[Attempt]]:
+    """The solves from each design, for its goal, up to an error `most`.
+
+    Free to go anywhere, the solver leaves for linkages that miss the targets by far, and rarely returns. So a
+    solve keeps near its start, and another one follows where it ends at the edge.
+    """
+    tries: list[list[Attempt]] = [[] for _ in begun]
+    going = list(enumerate(begun))
+    for _ in range(STRIDES):
+        if not going or run.ended():
+            break
+        starts = [
+            started_at(scaled, one, GOALS[goal], most_error=most, stride=STRIDE) for _, (goal, one) in going
+        ]
+        made = run.solve(scaled, starts, solved)
+        solved += len(made)
+        farther = list[tuple[int, tuple[str, Candidate]]]()
+        for (number, (goal, _)), start, one in zip(going, starts, made, strict=True):
+            tries[number].append(one)
+            if one.verified and _at_edge(scaled, start, one.verified[0]):
+                farther.append((number, (goal, one.verified[0])))
+        going = farther
+    return tries
+
+
+def _at_edge(scaled: ScaledProblem, start: Start, found: Candidate) -> bool:
+    """Whether a solve moved a pivot as far as it might."""
+    moved = Start.of_linkage(scaled, found.linkage, found.verdict).points[:4] - start.points[:4]
+    return bool(max(np.abs(moved.real).max(), np.abs(moved.imag).max()) > AT_EDGE * start.terms.radius)
+
+
+def _verified(tries: Sequence[Attempt]) -> list[Candidate]:
+    return [each for one in tries for each in one.verified]
 
 
 def _best_at(
@@ -102,10 +147,17 @@ def started_at(
     *,
     most_error: float,
     zoned: bool = False,
+    stride: float = np.inf,
 ) -> Start:
-    """A start at a design, for a solve by the objective under a bound of the error."""
+    """A start at a design, for a solve by the objective under a bound of the error.
+
+    Pivots move by `stride` of the longest link at most.
+    """
     start = Start.of_linkage(scaled, candidate.linkage, candidate.verdict)
-    return start.under(objective=objective, most_error=most_error, zoned=zoned)
+    if objective is not None and objective.transmission:
+        start = replace(start, transmission=candidate.values["transmission"])
+    radius = stride * max(map(abs, start.lengths))
+    return start.under(objective=objective, most_error=most_error, zoned=zoned, radius=radius)
 
 
 def seeds_of(problem: Problem, found: Sequence[Candidate], most: float, count: int) -> tuple[Candidate, ...]:

@@ -224,18 +224,23 @@ def driver_angles(target: SearchTargets, unknowns: FloatArray, direction: FloatA
     return unknowns[:, :1] + TURN * sense * gone
 
 
-def by_angles(target: SearchTargets, batch: Batch, before: int = PROPORTIONS) -> FloatArray:
-    """Derivative of the driver angles, (n, N, M), by all unknowns; `before` them are those of the shape."""
-    n, first = len(target.points), before + 1
-    slope = np.zeros((len(batch), n, batch.unknowns.shape[1]))
+def by_angles(
+    target: SearchTargets, batch: Batch, before: int = PROPORTIONS, places: int = 0
+) -> FloatArray:
+    """Derivative of the driver angles, (n, N, M), by all unknowns.
+
+    `before` them are those of the shape, after them a number of `places`.
+    """
+    n, first, end = len(target.points), before + 1, batch.unknowns.shape[1] - places
+    slope = np.zeros((len(batch), n, end + places))
     if target.jumbled:
-        slope[:, :, before:] = np.eye(n)
+        slope[:, :, before:end] = np.eye(n)
         return slope
     slope[:, :, before] = 1
     if not target.timed:
-        share, gone = shares_of_turn(batch.unknowns[:, first:])
-        np.subtract(np.tril(np.ones((n, n)), -1), gone[:, :, None], out=slope[:, :, first:])
-        slope[:, :, first:] *= (TURN * batch.direction[:, None] * share)[:, None]
+        share, gone = shares_of_turn(batch.unknowns[:, first:end])
+        np.subtract(np.tril(np.ones((n, n)), -1), gone[:, :, None], out=slope[:, :, first:end])
+        slope[:, :, first:end] *= (TURN * batch.direction[:, None] * share)[:, None]
     return slope
 
 

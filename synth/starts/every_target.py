@@ -110,15 +110,15 @@ def _linearised(target: SearchTargets, batch: Batch, weight: float) -> Linear:
         by_theta2 = np.zeros((len(batch), count, 4))
         by_theta2[..., 3] = 1
         by_theta3 = by_theta3_of(loop, by_theta2)
-        residual, slope = missed_places(free, loop, z, by_theta2, by_theta3)
+        residual, by_p = missed_places(free, loop, z, by_theta2, by_theta3)
         turned, _ = body_turns(free, loop)
         ends = _ends(target, loop)
         over, by_over = _overstepped(target, loop, z, ends)
     root = np.sqrt(free.weights)
     spans = [root * each for e in (np.ones_like(loop.e2), loop.e2, loop.e3) for each in (e, 1j * e)]
-    columns = [*np.moveaxis(slope[..., :3], -1, 0), *spans]
-    rows = [np.stack([each.real for each in columns], -1), np.stack([each.imag for each in columns], -1)]
-    gaps, own = [residual.real, residual.imag], [slope[..., 3].real, slope[..., 3].imag]
+    spread = np.stack(spans, axis=-1)
+    rows = [np.concatenate([by_p[:, 0, :, :3], spread.real], -1), np.concatenate([by_p[:, 1, :, :3], spread.imag], -1)]
+    gaps, own = [residual.real, residual.imag], [by_p[:, 0, :, 3], by_p[:, 1, :, 3]]
     if free.has_angles:
         root = np.sqrt(free.turn_weights)
         by_turn = root[:, None] * by_theta3

@@ -23,6 +23,7 @@ from grashof.synth.starts.every_target import costs_of_all, fitted_to_all
 from grashof.synth.starts.loop_search import (
     PLACES,
     Placed,
+    cost_within_limits,
     draw,
     fitting,
     improve,
@@ -37,7 +38,7 @@ from grashof.synth.theory.stopping import raise_if_overdue
 
 DRAWS, TIMED_DRAWS = 2000, 600  # of a round; twice as many where limits bind, whose minima are narrower
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
-FEW_TARGETS = 40  # of a longer task decide which linkages are worth the rest
+MANY_TARGETS, FEW_TARGETS = 40, 16  # of a longer task a few decide which linkages are worth the rest
 # Where no limit binds: numbers of the best that continue, and their steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
 MOST_CURVES = 6  # starts of such a round
@@ -75,13 +76,19 @@ class LeastSquares(CouplerSearch):
     def round(self, _number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round:
         """A round of `size` times the usual number of draws and starts; there is always another one."""
         scaled, target = self.scaled, SearchTargets.of(self.scaled)
-        some, index = thinned(target, FEW_TARGETS)
+        some, index = _thinned(target)
         drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
         best = _best_fitting(some, drawn, size)
         # the deviation from a wanted torque depends on the place
         unbound = target.torque is None
         free = _free_round(scaled, _on_all_targets(target, index, best, size), size) if unbound else None
         return free or _limited_round(scaled, rng, drawn, best, size)
+
+
+def _thinned(target: SearchTargets) -> tuple[SearchTargets, IntArray]:
+    """The targets that the search begins with, and their indices."""
+    long = len(target.points) > MANY_TARGETS
+    return thinned(target, FEW_TARGETS if long else MANY_TARGETS)
 
 
 def _best_fitting(some: SearchTargets, drawn: Batch, size: int) -> Batch:
@@ -123,7 +130,7 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
-    if target.timed and len(target.points) > FEW_TARGETS and not scaled.every_constraint:
+    if target.timed and len(target.points) > MANY_TARGETS and not scaled.every_constraint:
         starts = [start.under(settled=True) for start in starts]  # as `_start` has it of the untimed
     counts = {"feasible finds": len(feasible)}
     most = size * MOST_CURVES * (2 if scaled.of_use else 1)
@@ -147,7 +154,7 @@ def _limited_round(
     scaled: ScaledProblem, rng: np.random.Generator, drawn: Batch, best: Batch, size: int
 ) -> Round:
     """Starts of the search under every limit, from drawn linkages and those that fit best."""
-    more = draw(thinned(SearchTargets.of(scaled), FEW_TARGETS)[0], len(drawn), rng, ASTRAY)
+    more = draw(_thinned(SearchTargets.of(scaled))[0], len(drawn), rng, ASTRAY)
     before_limits, found = _search(scaled, joined(drawn, more), best, size)
     linkages, error = _ranked(scaled, found)
     share = size * min(1.0, max(AMPLE / len(scaled.targets), FEWEST))
@@ -169,7 +176,7 @@ def _limited_round(
 def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:
     """Linkages after the first stage, and after the last one."""
     target = SearchTargets.of(scaled)
-    some, index = thinned(target, FEW_TARGETS)
+    some, index = _thinned(target)
     with np.errstate(all="ignore"):
         batch = early = with_places(some, drawn)
         for number, (keep, steps, weight) in enumerate(STAGES):
@@ -177,7 +184,7 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
             if number == len(STAGES) - 2:
                 batch = joined(batch, with_places(some, best))
             raise_if_overdue()
-            error, _, _ = model(batch)
+            error = cost_within_limits(some, batch, weight)
             batch = _best_distinct(some, batch, error, size * keep, drawn=number == 0)
             batch, error = improve(model, batch, steps, 0.0)
             if number == 0:
@@ -213,7 +220,7 @@ def _ranked(scaled: ScaledProblem, batch: Batch) -> tuple[Screened, FloatArray]:
         with np.errstate(all="ignore"):
             error = costs_of_all(target, batch, STAGES[-1][2])
     else:
-        error, _, _ = within_limits(target, STAGES[-1][2])(batch)
+        error = cost_within_limits(target, batch, STAGES[-1][2])
     sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))
     linkages = judged(scaled, target, placed[sound], batch.direction[sound])
     unlimited = [GROUPS.index(name) for name in UNLIMITED]
@@ -257,7 +264,7 @@ def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: 
 
 def _all_fitted(target: SearchTargets) -> bool:
     """Whether the search itself fits linkages to all of many targets, so that a programme gains nothing."""
-    return len(target.points) > FEW_TARGETS and not target.timed
+    return len(target.points) > MANY_TARGETS and not target.timed
 
 
 def _some(rng: np.random.Generator, every: IntArray, count: int) -> list[int]:

@@ -20,6 +20,7 @@ from grashof.synth.quantities.driver_motion import meeting_order
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.starts.closed_loop import (
+    PROPORTIONS,
     Batch,
     Leading,
     Loop,
@@ -174,7 +175,8 @@ def improve(
         batch = replace(batch, unknowns=np.where(better[:, None], tried.unknowns, batch.unknowns))
         error = np.where(better, new_error, error)
         residual = np.where(better[:, None], new_residual, residual)
-        jacobian = np.where(better[:, None, None], new_jacobian, jacobian)
+        new_jacobian[~better] = jacobian[~better]
+        jacobian = new_jacobian
         damping = np.clip(np.where(better, damping * 0.3, damping * 5), 1e-14, 1e6)
         result.unknowns[rows], least[rows] = batch.unknowns, error
         if np.count_nonzero(least <= tolerance) >= until or stop_requested():
@@ -255,11 +257,13 @@ def fitting(target: SearchTargets) -> Model:
             z, q, r, error = project(target, loop)
             by_theta2 = by_angles(target, batch)
             by_theta3 = by_theta3_of(loop, by_theta2)
-            residual, slope = missed_places(target, loop, z, by_theta2, by_theta3)
+            residual, by_p = missed_places(target, loop, z, by_theta2, by_theta3)
+            slope = by_p[:, 0] + 1j * by_p[:, 1]
             share = np.swapaxes(q.conj(), 1, 2) @ slope
             slope -= q @ share
+            by_p[:, 0], by_p[:, 1] = slope.real, slope.imag
             at = Placement(target, loop, by_theta2, by_theta3, z, -back_substituted(r, share))
-            return _joined(target, at, residual, slope, PULL, error)
+            return _joined(target, at, residual, by_p, PULL, error)
 
     return model
 
@@ -273,22 +277,20 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
     def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             loop, z = _loop_and_places(target, batch)
-            inner = replace(batch, unknowns=batch.unknowns[:, :-PLACES])
             n, width = batch.unknowns.shape
-            by_theta2 = np.zeros((*loop.theta2.shape, width))
-            by_theta2[..., :-PLACES] = by_angles(target, inner)
+            by_theta2 = by_angles(target, batch, places=PLACES)
             by_theta3 = by_theta3_of(loop, by_theta2)
             by_z = np.zeros((n, 3, width), dtype=np.complex128)
             for k in range(3):
                 by_z[:, k, width - PLACES + 2 * k], by_z[:, k, width - PLACES + 2 * k + 1] = 1, 1j
-            residual, slope = missed_places(target, loop, z, by_theta2, by_theta3)
+            residual, by_p = missed_places(target, loop, z, by_theta2, by_theta3)
             root = np.sqrt(target.weights)
             for k, spanned in enumerate((np.ones_like(loop.e2), loop.e2, loop.e3)):
-                slope[..., width - PLACES + 2 * k] = root * spanned
-                slope[..., width - PLACES + 2 * k + 1] = 1j * root * spanned
+                for own, each in enumerate((root * spanned, 1j * root * spanned), width - PLACES + 2 * k):
+                    by_p[:, 0, :, own], by_p[:, 1, :, own] = each.real, each.imag
             error = np.where(loop.closes, (np.abs(residual) ** 2).sum(axis=1), np.inf)
             at = Placement(target, loop, by_theta2, by_theta3, z, by_z)
-            cost, missed, by_unknowns = _joined(target, at, residual, slope, weight, error)
+            cost, missed, by_unknowns = _joined(target, at, residual, by_p, weight, error)
             if target.torque is None:
                 return cost, missed, by_unknowns
             misses, by_misses = torque_residuals(target, at, batch)
@@ -299,6 +301,21 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
             )
 
     return model
+
+
+def cost_within_limits(target: SearchTargets, batch: Batch, weight: float) -> FloatArray:
+    """The first result of such a model alone, (n,)."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        loop, z = _loop_and_places(target, batch)
+        n, count = loop.theta2.shape
+        none = np.zeros((n, count, PROPORTIONS))  # derivatives that nobody asks for
+        at = Placement(target, loop, none, none, z, np.zeros((n, 3, PROPORTIONS)))
+        over, _ = oversteps(target, at)
+        turned, _ = body_turns(target, loop)
+        cost = _missed(target, loop, z) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
+        if target.torque is not None:
+            cost += (torque_residuals(target, at, batch)[0] ** 2).sum(axis=1)
+        return cost
 
 
 PLACES = 6  # unknowns that place a linkage: real and imaginary parts of z0, z1, z2
@@ -317,9 +334,14 @@ def standing(target: SearchTargets, batch: Batch) -> Placed:
     """The linkages of a batch with places, as placed."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         loop, z = _loop_and_places(target, batch)
-        fit = z[:, :1] + z[:, 1:2] * loop.e2 + z[:, 2:] * loop.e3
-        error = (target.weights * np.abs(target.points - fit) ** 2).sum(axis=1)
-        return _standing(target, loop, z, np.where(loop.closes, error, np.inf))
+        return _standing(target, loop, z, _missed(target, loop, z))
+
+
+def _missed(target: SearchTargets, loop: Loop, z: ComplexArray) -> FloatArray:
+    """Weighted sum of squared distances from the points (n,); infinite where a loop does not close."""
+    fit = z[:, :1] + z[:, 1:2] * loop.e2 + z[:, 2:] * loop.e3
+    error = (target.weights * np.abs(target.points - fit) ** 2).sum(axis=1)
+    return np.where(loop.closes, error, np.inf)
 
 
 def _loop_and_places(target: SearchTargets, batch: Batch) -> tuple[Loop, ComplexArray]:
@@ -330,28 +352,36 @@ def _loop_and_places(target: SearchTargets, batch: Batch) -> tuple[Loop, Complex
 
 def missed_places(
     target: SearchTargets, loop: Loop, z: ComplexArray, by_theta2: FloatArray, by_theta3: FloatArray
-) -> tuple[ComplexArray, ComplexArray]:
-    """From P to the points, weighted (n, N), and the derivative of P with z held (n, N, M)."""
+) -> tuple[ComplexArray, FloatArray]:
+    """From P to the points, weighted (n, N), and the derivative of P with z held (n, 2, N, M): x, then y."""
     root = np.sqrt(target.weights)
     turned2, turned3 = z[:, 1:2] * loop.e2, z[:, 2:] * loop.e3
     residual = (target.points - z[:, :1] - turned2 - turned3) * root
-    slope = (1j * turned2)[..., None] * by_theta2 + (1j * turned3)[..., None] * by_theta3
-    return residual, slope * root[:, None]
+    slope = np.empty((len(z), 2, *by_theta2.shape[1:]))
+    ahead2, ahead3 = 1j * root * turned2, 1j * root * turned3
+    for axis, (by2, by3) in enumerate(((ahead2.real, ahead3.real), (ahead2.imag, ahead3.imag))):
+        np.multiply(by2[..., None], by_theta2, out=slope[:, axis])
+        slope[:, axis] += by3[..., None] * by_theta3
+    return residual, slope
 
 
 def _joined(
     target: SearchTargets,
     at: Placement,
     residual: ComplexArray,
-    slope: ComplexArray,
+    by_p: FloatArray,
     weight: float,
     error: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Points, turns of the body and limits as one model; `slope` is the derivative of P."""
+    """Points, turns of the body and limits as one model; `by_p` is the derivative of P, (n, 2, N, M)."""
     over, by_over = oversteps(target, at)
     turned, _ = body_turns(target, at.loop)
     both = np.concatenate([residual.real, residual.imag, turned, weight * over], axis=1)
     by_turned = by_body_turns(target, at.by_theta3)
-    jacobian = np.concatenate([-slope.real, -slope.imag, by_turned, weight * by_over], axis=1)
+    many, unknowns = 2 * residual.shape[1], by_p.shape[3]
+    jacobian = np.empty((*both.shape, unknowns))
+    np.negative(by_p.reshape(len(both), many, unknowns), out=jacobian[:, :many])
+    jacobian[:, many : many + turned.shape[1]] = by_turned
+    np.multiply(weight, by_over, out=jacobian[:, many + turned.shape[1] :])
     cost: FloatArray = error + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
     return cost, both, jacobian

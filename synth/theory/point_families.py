@@ -24,7 +24,7 @@ Columns: TypeAlias = Sequence[ComplexArray]  # unknowns of a dyad, each of shape
 
 
 class Dyad(NamedTuple):
-    """The coefficients of a dyad at every point, each of shape (n, N - 1); or slopes by them."""
+    """The coefficients of a dyad at every point, each of shape (n, N - 1), or transposed; or slopes by them."""
 
     e: ComplexArray
     f: ComplexArray
@@ -150,12 +150,17 @@ class Family:
         self, unknowns: ComplexArray, displacements: ComplexArray, change: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """The N-point problem, as `homotopy.System` with M = 2 K."""
-        first, second, d, ds = self._parts(unknowns, displacements)
+        # many solutions side by side in memory: the inner loops are long
+        columns, both, moves = (np.ascontiguousarray(each.T) for each in (unknowns, displacements, change))
+        first, second = list(columns[:4]), list(columns[4:])
+        (d, ds), (move, moves) = np.split(both, 2), np.split(moves, 2)
         residual, by_one, by_two = without_turn(crank(first, d, ds), self.dyad(second, d, ds))
         *by_first, d1, ds1 = _crank_slopes(first, d, ds, by_one)
         *by_second, d2, ds2 = self.slopes(second, d, ds, by_two)
-        moved = (d1 + d2) * change[:, : self.size] + (ds1 + ds2) * change[:, self.size :]
-        return residual, np.stack([*by_first, *by_second], axis=-1), moved
+        jacobian = np.empty((len(unknowns), self.size, self.size), dtype=residual.dtype)
+        for number, column in enumerate((*by_first, *by_second)):
+            jacobian[..., number] = column.T
+        return residual.T, jacobian, ((d1 + d2) * move + (ds1 + ds2) * moves).T
 
     def precise(
         self, unknowns: ComplexArray, displacements: ComplexArray, change: ComplexArray
