@@ -77,7 +77,8 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
             good = [each for _, tries in mine for each in _verified(tries)]
             every = (*good, *latest.get(goal, ()))
             latest[goal] = _best_at(surrogate, goal, every, factor, most) or latest.get(goal, [])
-            led.update({(goal, factor): origin[one.id][1] for one in latest[goal]})
+            for one in latest[goal]:
+                led[goal, factor] = origin[one.id][1]
             found += good if surrogate.is_itself else latest[goal]
     if exact:  # the freedom that targets leave has been used; back onto them
         nearly = [] if run.ended() else [Start.of_linkage(scaled, one.linkage, one.verdict) for one in found]

@@ -224,9 +224,7 @@ def driver_angles(target: SearchTargets, unknowns: FloatArray, direction: FloatA
     return unknowns[:, :1] + TURN * sense * gone
 
 
-def by_angles(
-    target: SearchTargets, batch: Batch, before: int = PROPORTIONS, places: int = 0
-) -> FloatArray:
+def by_angles(target: SearchTargets, batch: Batch, before: int = PROPORTIONS, places: int = 0) -> FloatArray:
     """Derivative of the driver angles, (n, N, M), by all unknowns.
 
     `before` them are those of the shape, after them a number of `places`.

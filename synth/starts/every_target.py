@@ -117,7 +117,10 @@ def _linearised(target: SearchTargets, batch: Batch, weight: float) -> Linear:
     root = np.sqrt(free.weights)
     spans = [root * each for e in (np.ones_like(loop.e2), loop.e2, loop.e3) for each in (e, 1j * e)]
     spread = np.stack(spans, axis=-1)
-    rows = [np.concatenate([by_p[:, 0, :, :3], spread.real], -1), np.concatenate([by_p[:, 1, :, :3], spread.imag], -1)]
+    rows = [
+        np.concatenate([by_p[:, 0, :, :3], spread.real], -1),
+        np.concatenate([by_p[:, 1, :, :3], spread.imag], -1),
+    ]
     gaps, own = [residual.real, residual.imag], [by_p[:, 0, :, 3], by_p[:, 1, :, 3]]
     if free.has_angles:
         root = np.sqrt(free.turn_weights)

@@ -309,10 +309,13 @@ def cost_within_limits(target: SearchTargets, batch: Batch, weight: float) -> Fl
         loop, z = _loop_and_places(target, batch)
         n, count = loop.theta2.shape
         none = np.zeros((n, count, PROPORTIONS))  # derivatives that nobody asks for
-        at = Placement(target, loop, none, none, z, np.zeros((n, 3, PROPORTIONS)))
+        by_z = np.zeros((n, 3, PROPORTIONS), dtype=np.complex128)
+        at = Placement(target, loop, none, none, z, by_z)
         over, _ = oversteps(target, at)
         turned, _ = body_turns(target, loop)
-        cost = _missed(target, loop, z) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
+        cost: FloatArray = (
+            _missed(target, loop, z) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
+        )
         if target.torque is not None:
             cost += (torque_residuals(target, at, batch)[0] ** 2).sum(axis=1)
         return cost

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -78,9 +79,7 @@ class _Paths:
     step: FloatArray  # (n,)
 
     @classmethod
-    def begun(
-        cls, system: System, solutions: ComplexArray, start: ComplexArray, way: ComplexArray
-    ) -> _Paths:
+    def begun(cls, system: System, solutions: ComplexArray, start: ComplexArray, way: ComplexArray) -> _Paths:
         """Paths at their beginning."""
         count = len(solutions)
         share, points = np.full((3, count), np.nan), np.empty((3, *solutions.shape), dtype=np.complex128)
@@ -92,17 +91,28 @@ class _Paths:
 
     def moved(self, good: BoolArray, share: FloatArray, points: ComplexArray, slopes: ComplexArray) -> _Paths:
         """The paths with another point, where that is good."""
-        latest = zip((self.share, self.points, self.slopes), (share, points, slopes), strict=True)
-        kept = []
-        for last, new in latest:
-            after = np.concatenate([new[None], last[:2]])
-            kept.append(np.where(good.reshape(-1, *[1] * (new.ndim - 1)), after, last))
-        return _Paths(self.number, *kept, self.step)
+
+        def after(last: Any, new: Any) -> Any:
+            chosen = good.reshape(-1, *[1] * (new.ndim - 1))
+            return np.where(chosen, np.concatenate([new[None], last[:2]]), last)
+
+        return _Paths(
+            self.number,
+            after(self.share, share),
+            after(self.points, points),
+            after(self.slopes, slopes),
+            self.step,
+        )
 
     def of(self, rows: BoolArray) -> _Paths:
         """Some of them."""
-        last = (each[:, rows] for each in (self.share, self.points, self.slopes))
-        return _Paths(self.number[rows], *last, self.step[rows])
+        return _Paths(
+            self.number[rows],
+            self.share[:, rows],
+            self.points[:, rows],
+            self.slopes[:, rows],
+            self.step[rows],
+        )
 
 
 def _predicted(
@@ -110,7 +120,7 @@ def _predicted(
 ) -> ComplexArray:
     """Points (n, K) of paths at a share of the way ahead."""
     known = np.isfinite(paths.share[2])
-    predicted = np.empty_like(paths.points[0])
+    predicted: ComplexArray = np.empty_like(paths.points[0])
     predicted[known] = _by_hermite(paths.of(known), share[known])
     if not known.all():
         first = paths.of(~known)
@@ -126,7 +136,8 @@ def _predicted(
 
 def _by_hermite(paths: _Paths, share: FloatArray) -> ComplexArray:
     """The polynomial through three points with their slopes, at other places, (n, K)."""
-    at, found = paths.share, np.zeros_like(paths.points[0])
+    at = paths.share
+    found: ComplexArray = np.zeros_like(paths.points[0])
     for i in range(3):
         others = [at[j] for j in range(3) if j != i]
         base = np.prod([(share - other) / (at[i] - other) for other in others], axis=0) ** 2
@@ -143,7 +154,8 @@ def _slope(
     """Change of solutions (n, K) with the share of the way."""
     parameters = start + share[:, None] * way
     _, jacobian, change = system(at, parameters, np.broadcast_to(way, parameters.shape))
-    return -_solved(jacobian, change[..., None])[..., 0]
+    slope: ComplexArray = -_solved(jacobian, change[..., None])[..., 0]
+    return slope
 
 
 def _corrected(

@@ -24,7 +24,7 @@ Columns: TypeAlias = Sequence[ComplexArray]  # unknowns of a dyad, each of shape
 
 
 class Dyad(NamedTuple):
-    """The coefficients of a dyad at every point, each of shape (n, N - 1), or transposed; or slopes by them."""
+    """The coefficients of a dyad at every point, of shape (n, N - 1) or transposed; or slopes by them."""
 
     e: ComplexArray
     f: ComplexArray
