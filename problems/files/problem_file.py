@@ -39,6 +39,7 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
 
     Examples
     --------
+    >>> from grashof.problems import problem_text
     >>> luggage, text = load_with_text("luggage")
     >>> text == problem_text("luggage")
     True
