@@ -135,7 +135,7 @@ def test_ctrl_c_while_the_program_is_loaded_is_one_line() -> None:
         "    def find_spec(self, name, *_):\n"
         "        if name == 'numpy': os.kill(os.getpid(), signal.SIGINT)\n"
         "sys.meta_path.insert(0, Loading())\n"
-        "sys.argv = ['grashof', 'problems']\n"
+        "sys.argv = ['grashof', 'check', 'luggage']\n"
         "from grashof.__main__ import main; main()"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
