@@ -29,7 +29,7 @@ def least_linear(cost: FloatArray, rows: FloatArray, right: FloatArray, basis: I
     """
     every = np.arange(len(rows))
     inverse = np.asarray(np.linalg.inv(rows[every[:, None], basis]), dtype=np.float64)
-    slack = right - _times(rows, _times(inverse, right[every[:, None], basis]))
+    slack = right - times(rows, times(inverse, right[every[:, None], basis]))
     found = np.empty((len(rows), len(cost)))
     going, basis = every, basis.copy()
     for _ in range(_PIVOTS):
@@ -38,7 +38,7 @@ def least_linear(cost: FloatArray, rows: FloatArray, right: FloatArray, basis: I
         leaving = price.argmin(axis=1)
         done = price[every, leaving] >= -_DUAL
         if done.any():
-            found[going[done]] = _times(inverse[done], right[every[done][:, None], basis[done]])
+            found[going[done]] = times(inverse[done], right[every[done][:, None], basis[done]])
             go_on = ~done
             going, rows, right, slack = going[go_on], rows[go_on], right[go_on], slack[go_on]
             inverse, basis, size, leaving = inverse[go_on], basis[go_on], size[go_on], leaving[go_on]
@@ -46,7 +46,7 @@ def least_linear(cost: FloatArray, rows: FloatArray, right: FloatArray, basis: I
         if not going.size:
             return found
         way = -inverse[every, :, leaving]
-        rate = _times(rows, way)
+        rate = times(rows, way)
         with np.errstate(divide="ignore", invalid="ignore"):
             near = rate > _PIVOT * size[every, leaving, None]
             far = np.where(near, np.maximum(slack, 0.0) / rate, np.inf)
@@ -58,10 +58,11 @@ def least_linear(cost: FloatArray, rows: FloatArray, right: FloatArray, basis: I
         share[every, leaving] -= 1.0
         inverse = inverse + way[:, :, None] * (share / pivot[:, None])[:, None]
         basis[every, leaving] = entering
-    found[going] = _times(inverse, right[every[:, None], basis])
+    found[going] = times(inverse, right[every[:, None], basis])
     return found
 
 
-def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+def times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Products (M, R) of matrices (M, R, n) and vectors (M, n)."""
     product: FloatArray = (matrices @ vectors[..., None])[..., 0]
     return product

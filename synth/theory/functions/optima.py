@@ -9,7 +9,7 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.limits import ShapeLimits
-from grashof.synth.theory.functions.linear_programmes import least_linear
+from grashof.synth.theory.functions.linear_programmes import least_linear, times
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import raise_if_overdue
 
@@ -55,6 +55,12 @@ class Aim:
     def some(self, index: IntArray | BoolArray) -> Aim:
         """The aims of some of the generators."""
         return replace(self, desired=self.desired.some(index), limits=self.limits.some(index))
+
+    def free(self, batch: Generators) -> FloatArray:
+        """1 for every number of a shape that may change, 0 for one that stays, (K,)."""
+        free = np.ones(batch.UNKNOWNS)
+        free[-1] = 0.0 if self.held else 1.0
+        return free
 
     def errors(self, batch: Generators) -> FloatArray:
         """Outputs less the desired ones at the samples, about the best zero of each, (M, N); NaN: open."""
@@ -141,8 +147,7 @@ class _Linear:
 
     @classmethod
     def of(cls, aim: Aim, about: Generators) -> _Linear:
-        limits, free = aim.limits.of(about), np.ones(about.UNKNOWNS)
-        free[-1] = 0.0 if aim.held else 1.0
+        limits, free = aim.limits.of(about), aim.free(about)
         slopes = about.slopes(aim.desired.turned) * free
         return cls(aim, about, aim.errors(about), slopes, limits.value, limits.slope * free)
 
@@ -159,13 +164,13 @@ class _Linear:
     def step(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The best steps within radii (M,), shape (M, K), and the scores predicted for them."""
         moved = self._greatest(radius) if self.aim.greatest else self._square(radius)
-        off = self.errors + _times(self.slopes, moved)
+        off = self.errors + times(self.slopes, moved)
         if self.aim.greatest:
             error = np.ptp(off, axis=1) / 2
         else:
             off = self.aim.desired.centred(off)
             error = self.aim.sizes(off)
-        return moved, error + PRICE * self.aim.missed(off, self.limits + _times(self.by_shape, moved))
+        return moved, error + PRICE * self.aim.missed(off, self.limits + times(self.by_shape, moved))
 
     def best_along(self, moved: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Shapes to which steps lead, or these brought back to the errors that they predicted; the scores.
@@ -177,7 +182,7 @@ class _Linear:
         score, errors = self.aim.scores(self.about.changed(shape))
         best, least = shape.copy(), score.copy()
         centred = self.slopes - self.slopes.mean(axis=1, keepdims=True)
-        predicted = self.errors + _times(self.slopes, moved)
+        predicted = self.errors + times(self.slopes, moved)
         scale = np.einsum("mnk,mnk->m", centred, centred)
         turned = centred.swapaxes(1, 2)
         normal = turned @ centred + 1e-8 * np.maximum(scale, 1e-280)[:, None, None] * np.eye(shape.shape[1])
@@ -188,7 +193,7 @@ class _Linear:
             going, strayed = going[known], strayed[known]
             if not going.size:
                 break
-            side = _times(turned[going], strayed - strayed.mean(axis=1, keepdims=True))
+            side = times(turned[going], strayed - strayed.mean(axis=1, keepdims=True))
             shape[going] -= np.linalg.solve(normal[going], side[..., None])[..., 0]
             score, errors = self.aim.some(going).scores(self.about[going].changed(shape[going]))
             better = score < least[going]
@@ -222,23 +227,17 @@ class _Linear:
         each = np.arange(count)
         ahead = slopes[each, errors.argmax(axis=1)] < slopes[each, errors.argmin(axis=1)]
         corner = np.where(ahead, 1.0, -1.0)
-        there = errors + _times(slopes, corner)
+        there = errors + times(slopes, corner)
         first = 2 * samples + kept
         short = np.concatenate(
-            [-right[:, 2 * samples : first] - _times(by_shape, corner), np.zeros((count, 1))], axis=1
+            [-right[:, 2 * samples : first] - times(by_shape, corner), np.zeros((count, 1))], axis=1
         ).argmax(axis=1)
         worst = np.where(short < kept, 2 * samples + short, rows.shape[1] - 1)
         at_corner = first + np.arange(unknowns) + unknowns * ~ahead
         basis = [at_corner, there.argmax(axis=1), samples + there.argmin(axis=1), worst]
         cost = np.concatenate([np.zeros(unknowns + 1), [1.0, 1.0]])
         found = least_linear(cost, rows, right, np.column_stack(basis))
-        return np.clip(found[:, :unknowns], -1.0, 1.0) * radius[:, None] * self._free
-
-    @property
-    def _free(self) -> FloatArray:
-        free = np.ones(self.about.UNKNOWNS)
-        free[-1] = 0.0 if self.aim.held else 1.0
-        return free
+        return np.clip(found[:, :unknowns], -1.0, 1.0) * radius[:, None] * self.aim.free(self.about)
 
     def _square(self, radius: FloatArray) -> FloatArray:
         """Least squares in the steps and the slacks, the zero eliminated, under inequalities."""
@@ -246,7 +245,7 @@ class _Linear:
         centred = self.aim.desired.centred(self.slopes)
         each = zip(self.errors, centred, self.limits, self.by_shape, radius.tolist(), strict=True)
         moved = [self._least_square(weights, *one) for one in each]
-        return np.reshape(moved, (-1, self.about.UNKNOWNS)) * self._free
+        return np.reshape(moved, (-1, self.about.UNKNOWNS)) * self.aim.free(self.about)
 
     def _least_square(
         self,
@@ -277,11 +276,6 @@ class _Linear:
             least = np.concatenate([least, errors - band, -errors - band])
         found = under_inequalities(matrix, side, inequality, least)
         return np.clip(found[:unknowns], -radius, radius)
-
-
-def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
-    product: FloatArray = (matrices @ vectors[..., None])[..., 0]
-    return product
 
 
 def under_inequalities(
