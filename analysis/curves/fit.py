@@ -5,14 +5,12 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev, legendre
 
-from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
-from grashof.analysis.mechanism.mobility import one_by_one
+from grashof.analysis.mechanism.even_motion import with_edges
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.quadrature import gauss_legendre
 from grashof.problems import Linkage, ProblemError
@@ -236,7 +234,12 @@ def coupler_fit_r2(
     degree = whole_number(degree, 1, "degree")
     if degree > 30:
         raise ProblemError(f"degree is {degree}; it must be from 1 to 30")
-    return one_by_one(partial(_settled_r2, degree), linkage, theta2_start, theta2_end)[()]
+    members = np.arange(linkage.theta1.size).reshape(linkage.shape)
+    ends = (np.asarray(end, dtype=np.float64) for end in (theta2_start, theta2_end))
+    given = np.broadcast_arrays(*ends, members)
+    start, end, member = (each.ravel() for each in given)
+    flat = linkage[None][np.unravel_index(member, (1, *linkage.shape))]
+    return _settled_r2(degree, flat, start, end).reshape(given[0].shape)[()]
 
 
 def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -256,33 +259,42 @@ def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray
     return t, y
 
 
-def _settled_r2(degree: int, linkage: Linkage, start: float, end: float) -> float:
-    if start == end:
-        return np.nan
-    motion, panels, before = even_motion(linkage, start, end), _FEWEST, np.inf
-    while True:
-        r2 = _r2_by_panels(linkage, motion, panels, degree)
-        if not abs(r2 - before) > _SETTLED or panels >= _MOST:
-            return r2
-        panels, before = 2 * panels, r2
+def _settled_r2(degree: int, linkage: Linkage, start: FloatArray, end: FloatArray) -> FloatArray:
+    """R2 of linkages (n,) between driver angles (n,); each to the last bit as of it alone."""
+    found, before = np.full(start.shape, np.nan), np.full(start.shape, np.inf)
+    panels, left = _FEWEST, np.flatnonzero(start != end)
+    while left.size:
+        found[left] = _r2_by_panels(linkage[left], start[left], end[left], panels, degree)
+        unsettled = np.abs(found[left] - before[left]) > _SETTLED
+        before[left] = found[left]
+        left = left[unsettled] if panels < _MOST else left[:0]
+        panels *= 2
+    return found
 
 
-def _r2_by_panels(linkage: Linkage, motion: EvenMotion, panels: int, degree: int) -> float:
-    share, weight = gauss_legendre(motion.edges(panels))
-    theta2, counts = motion.theta2(share), weight * np.abs(motion.rate(share))
-    root = np.sqrt(counts / counts.sum())[:, None]
-    p = solve_position(linkage, theta2).p
-    middle = p[len(p) // 2]
-    if not np.isfinite(p).all():
-        return np.nan
-    basis = np.linalg.qr(root * legendre.legvander(_scaled(theta2, motion.start, motion.end), degree))[0]
-    p = root * (p - middle)
-    spread = ((p - root * (root.T @ p)) ** 2).sum()
-    wrong = ((p - basis @ (basis.T @ p)) ** 2).sum()
-    return float(_r2(wrong, spread, np.abs(middle).max()))
+def _r2_by_panels(
+    linkage: Linkage, start: FloatArray, end: FloatArray, panels: int, degree: int
+) -> FloatArray:
+    found = np.empty(start.shape)
+    for rows, motion, edges in with_edges(linkage, start, end, panels):
+        share, weight = gauss_legendre(edges)
+        theta2, counts = motion.theta2(share), weight * np.abs(motion.rate(share))
+        root = np.sqrt(counts / counts.sum(axis=-1, keepdims=True))[..., None]
+        p = solve_position(linkage[rows, None], theta2).p
+        middle = p[:, [p.shape[1] // 2]]
+        scaled = _scaled(theta2, start[rows, None], end[rows, None])
+        basis = np.linalg.qr(root * legendre.legvander(scaled, degree))[0]
+        p = root * (p - middle)
+        spread, wrong = (_squares(p - fit @ (fit.swapaxes(-1, -2) @ p)) for fit in (root, basis))
+        found[rows] = _r2(wrong, spread, np.abs(middle).max(axis=(-1, -2)))
+    return found
 
 
-def _scaled(parameter: FloatArray, low: float, high: float) -> FloatArray:
+def _squares(rows: FloatArray) -> FloatArray:
+    return np.asarray((rows**2).reshape(len(rows), -1).sum(axis=-1))
+
+
+def _scaled(parameter: FloatArray, low: float | FloatArray, high: float | FloatArray) -> FloatArray:
     return (2 * parameter - low - high) / (high - low)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import fields
 from functools import cached_property, partial
 from itertools import permutations
@@ -10,13 +10,19 @@ from operator import attrgetter
 
 import numpy as np
 
-from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
-from grashof.analysis.judge.coupler_motion import CouplerMotion, coupler_motion
+from grashof.analysis.judge.coupler_motion import CouplerMotion, coupler_motions, curve_distances_of_each
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.effort_travel import effort_deviation
 from grashof.analysis.judge.meeting.dwell_output import made_band
-from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
+from grashof.analysis.judge.over_task import (
+    TORQUE,
+    OverTask,
+    each_over_task,
+    motion_ends,
+    over_task,
+    task_peaks,
+)
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.analysis.judge.wanted_torque import torque_misses
@@ -30,7 +36,6 @@ from grashof.problems.values.requirements.distances import PAIRS, ends_of
 from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Needs
 from grashof.problems.values.tasks.tandem_task import LINKS
 
-_OF_COUPLER = tuple(f"{name}_{end}" for name in ("angle", "rate") for end in ("min", "max"))
 _RATES = tuple(f"rate_{name}" for name in ("start", "end", "min", "max"))  # of cylinders
 
 
@@ -44,7 +49,6 @@ class Values(Mapping[str, float]):
     def __init__(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> None:
         self.linkage, self.verdict, self.problem = linkage, verdict, problem
         self._known: dict[str, float] = {}
-        self._peaks: FloatArray | None = None
         self.enclosure: Enclosure | None = None  # once `find_enclosures` has made it
 
     def __getitem__(self, key: str) -> float:
@@ -71,6 +75,11 @@ class Values(Mapping[str, float]):
         return PARTS[key](self) if key in PARTS else {"": np.array([self[key]])}
 
     @cached_property
+    def columns(self) -> Mapping[str, float | str]:
+        """Columns of the linkage."""
+        return self.linkage.columns
+
+    @cached_property
     def at_targets(self) -> Position:
         """The linkage at the targets."""
         return solve_position(self.linkage, self.verdict.theta2, self.verdict.assembly)
@@ -90,7 +99,7 @@ class Values(Mapping[str, float]):
     @cached_property
     def over_task(self) -> OverTask:
         """Figures of the motion from the first target to the last."""
-        return over_task(self.linkage, self.problem, self.verdict, self._peaks)
+        return over_task(self.linkage, self.problem, self.verdict)
 
     @cached_property
     def made(self) -> Mapping[str, float]:
@@ -112,7 +121,7 @@ class Values(Mapping[str, float]):
     @cached_property
     def coupler(self) -> CouplerMotion:
         """Extremes of the direction and the rate of the coupler over the task motion."""
-        return coupler_motion(self.linkage, self.problem.task, self.verdict)
+        return coupler_motions([self.linkage], self.problem, [self.verdict])[0]
 
     @cached_property
     def torque_misses(self) -> FloatArray:
@@ -120,20 +129,32 @@ class Values(Mapping[str, float]):
         return torque_misses(self.linkage, self.problem, self.verdict)
 
     @cached_property
-    def curve_distances(self) -> tuple[float, float]:
+    def curve_distances(self) -> list[float]:
         """Hausdorff and Fréchet distance of the coupler curve from the polygon of the targets."""
-        if not self.verdict.full_rotation or not self.problem.task.has_position.all():
-            return np.nan, np.nan
-        return curve_distances(self.linkage, self.problem.task.positions, self.verdict.direction)
+        return curve_distances_of_each([self.linkage], self.problem, [self.verdict])[0]
 
 
-def find_peaks(designs: Sequence[Values]) -> None:
-    """Find the greatest speeds and loads of designs of a problem at once, before they are needed."""
-    wanted = [each for each in designs if each._peaks is None and "over_task" not in vars(each)]
-    if wanted:
-        linkages, verdicts = zip(*((each.linkage, each.verdict) for each in wanted), strict=True)
-        for each, row in zip(wanted, task_peaks(linkages, wanted[0].problem, verdicts), strict=True):
-            each._peaks = row
+_COUPLER = {f"coupler_{field.name}": field.name for field in fields(CouplerMotion)}
+# Figures that are found faster for several designs: the properties that keep them, and their quantities.
+_TOGETHER: tuple[tuple[str, Callable[..., Sequence[object]], Set[str]], ...] = (
+    ("over_task", each_over_task, {field.name for field in fields(OverTask)}),
+    ("coupler", coupler_motions, _COUPLER.keys()),
+    ("curve_distances", curve_distances_of_each, {"hausdorff", "frechet"}),
+)
+
+
+def find_together(designs: Sequence[Values], keys: Set[str]) -> None:
+    """Find the figures behind quantities of designs of a problem at once, before they are needed."""
+    if not designs:
+        return
+    problem = designs[0].problem
+    stated = {key for key in keys if problem.states(QUANTITIES[key].needs)}
+    for name, measure, quantities in _TOGETHER:
+        wanted = [] if stated.isdisjoint(quantities) else [each for each in designs if name not in vars(each)]
+        if wanted:
+            found = measure([each.linkage for each in wanted], problem, [each.verdict for each in wanted])
+            for each, figures in zip(wanted, found, strict=True):
+                vars(each)[name] = figures  # as the cached property keeps it
 
 
 def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float:
@@ -143,7 +164,7 @@ def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float
 
 
 def _column(name: str, values: Values) -> float:
-    return float(values.linkage.columns.get(name, np.nan))
+    return float(values.columns.get(name, np.nan))
 
 
 def _of_linkage(name: str, values: Values) -> float:
@@ -218,10 +239,9 @@ def _of_output(name: str, place: int, values: Values) -> float:
 
 def _torque_peak(values: Values) -> float:
     """That of `over_task`, without the rest of it."""
-    if values._peaks is None:
-        found = task_peaks([values.linkage], values.problem, [values.verdict], torque_alone=True)
-        return float(found[0, TORQUE])
-    return float(values._peaks[TORQUE])
+    if "over_task" in vars(values):
+        return values.over_task.torque_peak
+    return float(task_peaks([values.linkage], values.problem, [values.verdict], torque_alone=True)[0, TORQUE])
 
 
 def _omega2(values: Values) -> float:
@@ -280,7 +300,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "time_ratio": lambda values: float(values.stroke.time_ratio),
     "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
     "mechanical_advantage_min": lambda values: values["mechanical_advantage"],
-    **{f"coupler_{name}": attrgetter(f"coupler.{name}") for name in _OF_COUPLER},
+    **{key: attrgetter(f"coupler.{name}") for key, name in _COUPLER.items()},
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{name: partial(_cylinder_column, name) for name in Cylinder.COLUMNS},

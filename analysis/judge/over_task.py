@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -15,10 +15,11 @@ from grashof.analysis.forces.from_spec import TRAVEL_ROUNDING, BeyondLoadError, 
 from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers, mean_in_time
-from grashof.analysis.mechanism.even_motion import close_samples
+from grashof.analysis.mechanism.even_motion import close_samples, with_edges
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.numerics.peaks import peaks
+from grashof.analysis.numerics.peaks import Curve, peaks
+from grashof.analysis.numerics.quadrature import settled_sums
 from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -26,10 +27,9 @@ from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.linkages.linkage import by_kind
 
 _SAMPLES = 361
+_PANELS = 8  # over a motion, for means
 TORQUE = 4  # place of the torque among the peaks of a motion, behind those of places and angles
 _TOGETHER = 32  # linkages in a batch; more are no faster
-
-Curves = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,9 +101,7 @@ def sampled(linkage: Linkage, start: float, end: float) -> FloatArray:
     return close_samples(linkage, start, end, _SAMPLES, second=False)
 
 
-def over_task(
-    linkage: Linkage, problem: Problem, verdict: Verdict, greatest: FloatArray | None = None
-) -> OverTask:
+def over_task(linkage: Linkage, problem: Problem, verdict: Verdict) -> OverTask:
     """Figures of a single linkage over the motion from the first target to the last.
 
     Parameters
@@ -114,8 +112,6 @@ def over_task(
         Its task; its dynamics give the driver's speed (else 1 rad/s) and the masses.
     verdict : Verdict
         Of `verify`: the driver angle at every target.
-    greatest : ndarray, shape (6,), optional
-        Its row of `task_peaks`, where that is known.
 
     Returns
     -------
@@ -137,22 +133,27 @@ def over_task(
     >>> round(found.omega4_max, 6), round(found.coupler_fit_r2, 6), round(found.torque_peak, 3)
     (1.260659, 0.999996, 2.757)
     """
-    known = task_peaks([linkage], problem, [verdict])[0] if greatest is None else greatest
-    omega4, speed, acceleration, turning, torque, force = known.tolist()
-    if np.isnan(omega4):
-        return OverTask(np.nan, np.nan, np.nan, np.nan, np.nan)
-    linkage, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
-    fit, rms = float(coupler_fit_r2(linkage, *ends)), torque
-    if problem.dynamics is not None and np.isfinite(torque):
-        law = driver_law(problem, *ends)
-        curves = load_curves(linkage, problem.dynamics, metres(problem.length_unit), law)
-        with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
-            mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
-        rms = float(np.sqrt(mean))
-    return OverTask(omega4, speed, acceleration, turning, fit, torque, rms, force)
+    return each_over_task([linkage], problem, [verdict])[0]
 
 
-class _Motion(NamedTuple):
+def each_over_task(
+    linkages: Sequence[Linkage], problem: Problem, verdicts: Sequence[Verdict]
+) -> list[OverTask]:
+    """Figures of several linkages as of `over_task`, and equal to them to the last bit."""
+    found = [OverTask(*[np.nan] * 5)] * len(linkages)
+    for rows, some in joined_motions(linkages, problem, verdicts):
+        peaks = _peaks_of(some, problem)
+        fits = coupler_fit_r2(batch_of(some), *_ends(some))
+        rms = _rms_torques(some, problem, peaks[:, TORQUE])
+        columns = (*peaks[:, :TORQUE].T, fits, peaks[:, TORQUE], rms, peaks[:, TORQUE + 1])
+        for row, figures in zip(rows, np.stack(columns, axis=1).tolist(), strict=True):
+            found[row] = OverTask(*figures)
+    return found
+
+
+class Motion(NamedTuple):
+    """A linkage on the assembly that it uses, the driver's law, and angles of the driver to sample at."""
+
     linkage: Linkage
     law: DriverLaw
     theta2: FloatArray
@@ -169,29 +170,80 @@ def task_peaks(
     targets, of the last two also without dynamics or where a slide travels beyond the rows of a load.
     """
     found = np.full((len(linkages), TORQUE + 2), np.nan)
+    for rows, some in joined_motions(linkages, problem, verdicts):
+        found[rows] = _peaks_of(some, problem, torque_alone=torque_alone)
+    return found
+
+
+def joined_motions(
+    linkages: Sequence[Linkage], problem: Problem, verdicts: Sequence[Verdict]
+) -> Iterator[tuple[list[int], list[Motion]]]:
+    """Motions that join the targets, with their rows: those of a kind together where the driver is steady."""
     motions = {}
     for k, (linkage, verdict) in enumerate(zip(linkages, verdicts, strict=True)):
         used, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
         theta2 = sampled(used, *ends)
         if joins(used, verdict, theta2):
-            motions[k] = _Motion(used, driver_law(problem, *ends), theta2)
+            motions[k] = Motion(used, driver_law(problem, *ends), theta2)
+    steady = [k for k, motion in motions.items() if motion.law.motor.steady]
+    groups = [[steady[row] for row in rows] for rows in by_kind([motions[k].linkage for k in steady])]
+    for group in (*groups, *([k] for k in motions if k not in set(steady))):
+        for first in range(0, len(group), _TOGETHER):
+            rows = group[first : first + _TOGETHER]
+            yield rows, [motions[k] for k in rows]
+
+
+def _peaks_of(some: Sequence[Motion], problem: Problem, *, torque_alone: bool = False) -> FloatArray:
+    """Rows of `task_peaks`."""
+    found = np.full((len(some), TORQUE + 2), np.nan)
     with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
-        for group in _groups(motions):
-            some = [motions[k] for k in group]
-            if not torque_alone:
-                batch, law, stretches = _together(some)
-                outputs = problem.task.output_links(batch.mechanism)
-                curves = _speeds(batch, law, outputs)
-                found[group, :TORQUE] = peaks(curves, stretches)[0].reshape(TORQUE, -1).T
-                if not outputs:
-                    found[group, TORQUE - 1] = np.nan
-            if problem.dynamics is not None:
-                metre, rows = metres(problem.length_unit), 1 if torque_alone else 2
-                found[group, TORQUE : TORQUE + rows] = _loads(some, problem.dynamics, metre, rows).T
+        if not torque_alone:
+            batch, law, stretches = _together(some)
+            outputs = problem.task.output_links(batch.mechanism)
+            curves = _speeds(batch, law, outputs)
+            found[:, :TORQUE] = peaks(curves, stretches)[0].reshape(TORQUE, -1).T
+            if not outputs:
+                found[:, TORQUE - 1] = np.nan
+        if problem.dynamics is not None:
+            metre, rows = metres(problem.length_unit), 1 if torque_alone else 2
+            found[:, TORQUE : TORQUE + rows] = _loads(some, problem.dynamics, metre, rows).T
     return found
 
 
-def load_curves(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw | SteadyDrivers) -> Curves:
+def _rms_torques(some: Sequence[Motion], problem: Problem, peak: FloatArray) -> FloatArray:
+    """Root mean squares (n,) over time of drive torques with these peaks, whose NaN and infinity stay."""
+    found, rows = peak.copy(), np.flatnonzero(np.isfinite(peak))
+    if problem.dynamics is not None and rows.size:
+        with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
+            loaded = [some[row] for row in rows.tolist()]
+            found[rows] = np.sqrt(_mean_squares(loaded, problem.dynamics, metres(problem.length_unit)))
+    return found
+
+
+def _mean_squares(some: Sequence[Motion], spec: DynamicsSpec, metre: float) -> FloatArray:
+    """Means (n,) of the squared torques; of some only by panels that are split where one is not smooth."""
+    found, rough = np.empty(len(some)), set(range(len(some)))
+    if some[0].law.motor.steady:
+        start, end = _ends(some)
+        for rows, motion, edges in with_edges(batch_of(some), start, end, _PANELS):
+            batch, law, _ = _together([some[row] for row in rows.tolist()])
+            squares, at = _squares(batch, spec, metre, law), motion.theta2
+            sums, settled = settled_sums(lambda t: squares(at(t)) * motion.rate(t), edges)  # noqa: B023
+            moved = settled & (start != end)[rows]
+            found[rows[moved]] = sums[moved] / (end - start)[rows[moved]]
+            rough -= set(rows[moved].tolist())
+    for row in rough:
+        linkage, law, _ = some[row]
+        found[row] = mean_in_time(linkage, law, _squares(linkage, spec, metre, law), _PANELS)[0]
+    return found
+
+
+def _squares(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw | SteadyDrivers) -> Curve:
+    curves = load_curves(linkage, spec, metre, law)
+    return lambda place: curves(place)[0] ** 2
+
+
+def load_curves(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw | SteadyDrivers) -> Curve:
     """|torque| in N m and the greatest joint force in N, each a row, over places of the law."""
     masses = stated_masses(linkage, spec, metre)
     loads = stated_loads(spec, metre, lambda state: law.time_at(state.theta2))
@@ -204,7 +256,7 @@ def load_curves(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverL
     return curves
 
 
-def _speeds(linkage: Linkage, law: DriverLaw | SteadyDrivers, outputs: Sequence[int]) -> Curves:
+def _speeds(linkage: Linkage, law: DriverLaw | SteadyDrivers, outputs: Sequence[int]) -> Curve:
     """|omega4|, speed and acceleration of P, |alpha| of the outputs, each a row, over places of the law."""
 
     def curves(place: FloatArray) -> FloatArray:
@@ -216,7 +268,7 @@ def _speeds(linkage: Linkage, law: DriverLaw | SteadyDrivers, outputs: Sequence[
     return curves
 
 
-def _loads(some: Sequence[_Motion], spec: DynamicsSpec, metre: float, rows: int) -> FloatArray:
+def _loads(some: Sequence[Motion], spec: DynamicsSpec, metre: float, rows: int) -> FloatArray:
     """The first rows of `load_curves` where they are greatest, shape (rows, n)."""
     batch, law, stretches = _together(some)
     try:
@@ -227,25 +279,30 @@ def _loads(some: Sequence[_Motion], spec: DynamicsSpec, metre: float, rows: int)
         return each if len(some) == 1 else np.hstack([_loads([one], spec, metre, rows) for one in some])
 
 
-def _groups(motions: Mapping[int, _Motion]) -> Iterator[list[int]]:
-    """Those of a kind in batches; each by itself where the driver is not steady."""
-    steady = [k for k, motion in motions.items() if motion.law.motor.steady]
-    groups = [[steady[row] for row in rows] for rows in by_kind([motions[k].linkage for k in steady])]
-    for group in (*groups, *([k] for k in motions if k not in set(steady))):
-        for first in range(0, len(group), _TOGETHER):
-            yield group[first : first + _TOGETHER]
+def batch_of(some: Sequence[Motion]) -> Linkage:
+    """The linkages of motions as a batch (n,)."""
+    return some[0].linkage.stacked([each.linkage for each in some])
 
 
-def _together(some: Sequence[_Motion]) -> tuple[Linkage, DriverLaw | SteadyDrivers, list[FloatArray]]:
+def _ends(some: Sequence[Motion]) -> FloatArray:
+    """Driver angles at the beginnings and the ends of motions, shape (2, n), rad."""
+    return np.array([(each.law.start, each.law.start + each.law.rotation) for each in some]).T
+
+
+def _together(some: Sequence[Motion]) -> tuple[Linkage, DriverLaw | SteadyDrivers, list[FloatArray]]:
     """Linkages as a batch with its driver and its samples, shape (n, N); rows repeat their last sample."""
     linkage, law, theta2 = some[0]
     if not law.motor.steady:
         return linkage, law, law.stretches(theta2)
-    batch = linkage.stacked([each.linkage for each in some])[:, None]
+    batch = batch_of(some)[:, None]
     start, omega2 = np.array([(each.law.start, each.law.omega2) for each in some]).T[..., None]
+    return batch, SteadyDrivers(start, omega2), [samples_of(some)]
+
+
+def samples_of(some: Sequence[Motion]) -> FloatArray:
+    """Driver angles of motions, shape (n, N), rad; rows repeat their last sample."""
     most = max(len(each.theta2) for each in some)
-    rows = [np.pad(each.theta2, (0, most - len(each.theta2)), mode="edge") for each in some]
-    return batch, SteadyDrivers(start, omega2), [np.stack(rows)]
+    return np.stack([np.pad(each.theta2, (0, most - len(each.theta2)), mode="edge") for each in some])
 
 
 def uncovered_loads(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Defect]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from grashof.analysis.mechanism.first_motion import (
 )
 from grashof.analysis.mechanism.second_loop import cut, recurring
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 _SAMPLES = 481
 _NEAR = np.logspace(-8, -2, 31)  # rad, about positions close to a dead one
@@ -151,23 +151,56 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
     return replace(motion, corners=tuple(corners.tolist()))
 
 
+def with_edges(
+    linkage: Linkage, start: FloatArray, end: FloatArray, panels: int
+) -> Iterator[tuple[IntArray, EvenMotion | FirstMotion, FloatArray]]:
+    """The even motions (rows, 1) of linkages (n,) between driver angles (n,), and their edges (rows, M + 1).
+
+    In groups of `rows` of the batch with as many edges.
+    """
+    if len(linkage.mechanism.dyads) > 1:
+        for row, ends in enumerate(zip(start.tolist(), end.tolist(), strict=True)):
+            motion = even_motion(linkage[row], *ends)
+            yield np.array([row]), motion, motion.edges(panels)[None]
+        return
+    motions = first_motion(linkage[:, None], start[:, None], end[:, None])
+    every = [panel_edges(panels, shares) for shares in motions.share(motions[:, 0].ground_line())]
+    count = np.array([len(edges) for edges in every])
+    for number in np.unique(count).tolist():
+        rows = np.flatnonzero(count == number)
+        yield rows, motions[rows], np.stack([every[row] for row in rows])
+
+
 def angles_at_shares(
     linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike
 ) -> Callable[[FloatArray], FloatArray]:
     """Driver angles at shares (..., N) of the even motions of linkages (...) between driver angles (...)."""
     if len(linkage.mechanism.dyads) == 1:
         return first_motion(linkage, start, end)[..., None].theta2
-    ends = [np.broadcast_to(each, linkage.shape).astype(float).ravel().tolist() for each in (start, end)]
-    members = [linkage[at] for at in np.ndindex(linkage.shape)]
-    motions = [even_motion(*each) for each in zip(members, *ends, strict=True)]
+    start, end = (np.broadcast_to(each, linkage.shape).ravel() for each in (start, end))
+    flat = linkage[None][np.unravel_index(np.arange(len(start)), (1, *linkage.shape))]
+    of_rows, members = angles_of_rows(flat, start, end), np.arange(len(start)).reshape(linkage.shape)
 
     def angles(share: FloatArray) -> FloatArray:
         shape = *np.broadcast_shapes(share.shape[:-1], linkage.shape), share.shape[-1]
-        flat = np.broadcast_to(share, shape).reshape(-1, len(motions), shape[-1])
-        found = [motion.theta2(flat[:, number]) for number, motion in enumerate(motions)]
-        return np.stack(found, axis=1).reshape(shape)
+        rows, every = np.broadcast_to(members, shape[:-1]), np.broadcast_to(share, shape)
+        return of_rows(every.reshape(-1, shape[-1]), rows.ravel()).reshape(shape)
 
     return angles
+
+
+def angles_of_rows(
+    linkage: Linkage, start: FloatArray, end: FloatArray
+) -> Callable[[FloatArray, IntArray], FloatArray]:
+    """Driver angles at shares (K, N) of the even motions of rows (K,) of a batch (n,) between angles (n,)."""
+    if len(linkage.mechanism.dyads) == 1:
+        motion = first_motion(linkage, start, end)[:, None]
+        return lambda share, rows: motion[rows].theta2(share)
+    ends = zip(start.tolist(), end.tolist(), strict=True)
+    motions = [even_motion(linkage[row], *each) for row, each in enumerate(ends)]
+    return lambda share, rows: np.stack(
+        [motions[row].theta2(each) for row, each in zip(rows.tolist(), share, strict=True)]
+    )
 
 
 def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:

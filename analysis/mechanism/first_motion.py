@@ -77,11 +77,12 @@ class FirstMotion:
         return self._by_swing(FirstMotion._share, np.asarray(theta2, dtype=np.float64))
 
     def ground_line(self) -> FloatArray:
-        """Driver angles of one motion at which O2A lies along the ground line; none where it is plain."""
-        if self.swing == _Swing.PLAIN:
-            return np.empty(0)
-        ends = (np.array([self.start, self.end]) - self.centre) / np.pi
-        return np.asarray(self.centre + np.pi * np.arange(np.ceil(ends.min()), np.floor(ends.max()) + 1))
+        """Driver angles (..., K) at which O2A lies along the ground line; NaN where a motion has fewer."""
+        ends = (np.stack([self.start, self.end]) - self.centre) / np.pi
+        first, last = np.ceil(ends.min(axis=0)), np.floor(ends.max(axis=0))
+        turned = first[..., None] + np.arange(np.max(last - first) + 1)
+        there = (turned <= last[..., None]) & (self.swing != _Swing.PLAIN)[..., None]
+        return np.where(there, self.centre[..., None] + np.pi * turned, np.nan)
 
     def _by_swing(
         self, formula: Callable[[FirstMotion, _Swing, FloatArray], FloatArray], values: FloatArray
@@ -204,7 +205,7 @@ def first_motion(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike) -> 
 
 
 def panel_edges(panels: int, shares: FloatArray) -> FloatArray:
-    """Ends of equal panels of a motion, with further shares added."""
+    """Ends of equal panels of a motion, with further shares added; without NaN."""
     edges = np.sort(np.concatenate([np.linspace(0, 1, panels + 1), np.clip(shares, 0, 1)]))
     return edges[np.diff(edges, prepend=-1) > 1e-12]
 

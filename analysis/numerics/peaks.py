@@ -47,8 +47,7 @@ def greatest(
     highest samples are refined `rounds` times, eightfold each; four suffice for smooth curves.
     """
     values = curves(places[None])
-    padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(1, 1)], constant_values=-np.inf)
-    summit = (values >= padded[..., :-2]) & (values >= padded[..., 2:])
+    summit = summits(values)
     summit[..., 1:] &= places[..., 1:] > places[..., :-1]
     top = highest(np.where(summit, values, -np.inf), most)
     all_places = np.broadcast_to(places, values.shape)
@@ -122,6 +121,12 @@ def last_where(
         still = holds(middle)
         inside, outside = np.where(still, middle, inside), np.where(still, outside, middle)
     return inside
+
+
+def summits(values: FloatArray) -> BoolArray:
+    """Whether values (..., N) are at least as high as those beside them."""
+    padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(1, 1)], constant_values=-np.inf)
+    return np.asarray((values >= padded[..., :-2]) & (values >= padded[..., 2:]))
 
 
 def highest(values: FloatArray, most: int) -> IntArray:

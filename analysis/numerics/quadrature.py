@@ -9,7 +9,7 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from grashof.analysis.numerics.peaks import Curve
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import BoolArray, FloatArray
 
 NODES, WEIGHTS = legendre.leggauss(16)  # of a panel from -1 to 1
 _TERMS = legendre.legvander(NODES, 15) * (WEIGHTS[:, None] * (np.arange(16) + 0.5))
@@ -67,11 +67,8 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
         parts = ahead if ahead.low.size else _Pieces.over(curve, *_split(rough.low, rough.high))
         ahead = ahead[:0]
         spent += parts.low.size * len(NODES)
-        change, narrow = (
-            np.abs(parts.part[..., ::2] + parts.part[..., 1::2] - rough.part),
-            rough.width <= least,
-        )
-        unsettled = change > _SETTLED * (done.size.sum(axis=-1) + parts.size.sum(axis=-1))[..., None]
+        narrow = rough.width <= least
+        change, unsettled = parts.changed(rough, done.size.sum(axis=-1))
         kept = ~unsettled.reshape(-1, narrow.size).any(axis=0) | narrow | (spent > _MOST)
         doubt = np.where(unsettled & narrow, _to_come(change, before), _DOUBT) * change
         error = error + doubt[..., kept].sum(axis=-1)
@@ -79,12 +76,26 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
         before = np.repeat(change[..., ~kept], 2, axis=-1)
         if not rough.low.size and spent <= _MOST:
             done = done[np.argsort(done.low if edges[-1] >= edges[0] else -done.low, kind="stable")]
-            apart = done.apart(least)
+            apart = np.any(done.apart(least).reshape(-1, len(done.low)), axis=0)
             rough, done = done[apart], done[~apart]
             before = np.full(rough.part.shape, np.inf)
     done = done[np.argsort(done.low if edges[-1] >= edges[0] else -done.low, kind="stable")]
     error = error + _LEAST_ERROR * done.size.sum(axis=-1)
     return Panels(np.append(done.low, edges[-1]), done.part, np.asarray(error))
+
+
+def settled_sums(curves: Curve, edges: FloatArray, narrowest: float = 1e-14) -> tuple[FloatArray, BoolArray]:
+    """Integrals of curves over panels of their own, and whether `integrate` splits none of them further.
+
+    Curves take places (n, N), `edges` are (n, M + 1); the result has shape (n,) twice. An integral that is
+    not settled is still rough.
+    """
+    low, high = edges[:, :-1], edges[:, 1:]
+    rough, parts = _Pieces.over(curves, low, high), _Pieces.over(curves, *_split(low, high))
+    _, unsettled = parts.changed(rough, np.zeros(len(edges)))
+    apart = parts.apart(narrowest * np.abs(edges[:, [-1]] - edges[:, [0]]))
+    settled = ~np.concatenate([unsettled, apart], axis=-1).any(axis=-1)
+    return np.asarray(parts.part.sum(axis=-1)), np.asarray(settled)
 
 
 def held(value: float, error: float) -> float:
@@ -107,14 +118,18 @@ def held(value: float, error: float) -> float:
 
 
 def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Places and weights of Gauss-Legendre sums over panels with these ends, each of shape (N,)."""
-    half = np.diff(edges)[:, None] / 2
-    return (edges[:-1, None] + half + half * NODES).ravel(), (half * WEIGHTS).ravel()
+    """Places and weights of Gauss-Legendre sums over panels with these ends (..., M), each (..., N)."""
+    half = np.diff(edges)[..., None] / 2
+    places, weights = edges[..., :-1, None] + half + half * NODES, half * WEIGHTS
+    return places.reshape(*edges.shape[:-1], -1), weights.reshape(*edges.shape[:-1], -1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pieces:
-    """M panels: integrals of the curve and its magnitude (..., M), polynomials at both ends (..., 2, M)."""
+    """Panels (M,), or (n, M) of n curves: integrals (..., M) of the curve and its magnitude, and its ends.
+
+    Those are the values (..., 2, M) of its polynomials at both ends.
+    """
 
     low: FloatArray
     high: FloatArray
@@ -125,9 +140,9 @@ class _Pieces:
     @classmethod
     def over(cls, curve: Curve, low: FloatArray, high: FloatArray) -> _Pieces:
         half = (high - low) / 2
-        places = (low + high)[:, None] / 2 + half[:, None] * NODES
-        values = np.asarray(curve(places.ravel()), dtype=np.float64)
-        values = values.reshape(*values.shape[:-1], *places.shape)
+        places = (low + high)[..., None] / 2 + half[..., None] * NODES
+        values = np.asarray(curve(places.reshape(*low.shape[:-1], -1)), dtype=np.float64)
+        values = values.reshape(*values.shape[:-1], *places.shape[-2:])
         sizes = np.abs(values) @ WEIGHTS * np.abs(half)
         return cls(low, high, values @ WEIGHTS * half, sizes, (values @ _TO_ENDS).swapaxes(-1, -2))
 
@@ -142,19 +157,25 @@ class _Pieces:
         both = ([getattr(self, name), getattr(others, name)] for name in self.__slots__)
         return _Pieces(*(np.concatenate(each, axis=-1) for each in both))
 
-    def apart(self, narrowest: float) -> npt.NDArray[np.bool_]:
-        """Whether a jump that matters may hide at an end of a panel, in order, shape (M,)."""
+    def changed(self, rough: _Pieces, others: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Changes of panels (..., M) by their parts, and which matter beside the size of others (...)."""
+        change = np.abs(self.part[..., ::2] + self.part[..., 1::2] - rough.part)
+        return change, change > _SETTLED * (others + self.size.sum(axis=-1))[..., None]
+
+    def apart(self, narrowest: float | FloatArray) -> BoolArray:
+        """Whether a jump that matters may hide at an end of a panel, in order, shape (..., M)."""
         jump = np.abs(self.ends[..., 0, 1:] - self.ends[..., 1, :-1])
         none = np.zeros((*jump.shape[:-1], 1))
         beside = np.maximum(np.concatenate([none, jump], -1), np.concatenate([jump, none], -1))
         hidden = beside * _GAP * self.width > _SETTLED * self.size.sum(axis=-1, keepdims=True)
-        return np.asarray(hidden.reshape(-1, len(self.low)).any(axis=0) & (self.width > narrowest))
+        return np.asarray(hidden & (self.width > narrowest))
 
 
 def _split(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Ends of both parts of each panel."""
-    ends = np.stack([low, low + _SPLIT * (high - low), high], axis=1)
-    return ends[:, :2].ravel(), ends[:, 1:].ravel()
+    ends = np.stack([low, low + _SPLIT * (high - low), high], axis=-1)
+    shape = *low.shape[:-1], -1
+    return ends[..., :2].reshape(shape), ends[..., 1:].reshape(shape)
 
 
 def _to_come(change: FloatArray, before: FloatArray) -> FloatArray:

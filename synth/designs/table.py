@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
-from grashof.analysis.judge.measures import find_peaks
-from grashof.analysis.judge.over_task import OverTask
+from grashof.analysis.judge.measures import find_together
 from grashof.problems import Problem
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Quantity
@@ -99,8 +97,7 @@ def rows_of(
 ) -> list[Row]:
     """Candidates as rows, in the order given, each with the columns `COLUMNS`."""
     keys = {each.key for each in quantities}
-    if not keys.isdisjoint(field.name for field in fields(OverTask)):
-        find_peaks([candidate.values for candidate in candidates])
+    find_together([candidate.values for candidate in candidates], keys)
     ranked = keys.issuperset(goal.key for goal in pareto_goals(problem))
     fronts = pareto_optimal(problem, candidates) if ranked else [False] * len(candidates)
     own = any(candidate.own_objective is not None for candidate in candidates)
@@ -157,7 +154,7 @@ def facts(candidate: Candidate) -> dict[str, Any]:
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
         "assembly": int(candidate.linkage.assembly),
-        **{name: candidate.linkage.columns.get(name) for name in ("assembly_2", "hosts", "point_link")},
+        **{name: candidate.values.columns.get(name) for name in ("assembly_2", "hosts", "point_link")},
         "circuit_ok": verdict.circuit_ok,
         "branch_ok": verdict.branch_ok,
         "order_ok": verdict.order_ok,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import verify
-from grashof.analysis.judge.coupler_motion import coupler_motion
+from grashof.analysis.judge.coupler_motion import coupler_motions
 from grashof.analysis.judge.design import Design, greatest
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import (
@@ -59,9 +59,10 @@ def test_extremes_are_those_of_dense_samples(kind: str) -> None:
     np.testing.assert_allclose(np.exp(1j * along), np.exp(1j * theta3[::40_000]), atol=1e-12)
     task = PathTask(solve_position(linkage, np.linspace(start, end, 5)).p)
     wanted = Requirements(rotatability="any")
-    verdict = verify(linkage, task, wanted, problem=Problem(task=task, requirements=wanted))
+    problem = Problem(task=task, requirements=wanted)
+    verdict = verify(linkage, task, wanted, problem=problem)
     assert verdict.ok
-    found, rate = coupler_motion(linkage, task, verdict), np.gradient(theta3, dense, edge_order=2)
+    (found,), rate = coupler_motions([linkage], problem, [verdict]), np.gradient(theta3, dense, edge_order=2)
     turns = 2 * np.pi * np.ceil((theta3.min() - np.pi) / (2 * np.pi))
     assert found.angle_min == pytest.approx(theta3.min() - turns, abs=1e-8)
     assert found.angle_max == pytest.approx(theta3.max() - turns, abs=1e-8)

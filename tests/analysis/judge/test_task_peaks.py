@@ -1,13 +1,14 @@
 """Greatest speeds and loads of many designs at once are those of each alone."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
 
 from grashof.analysis import verify
 from grashof.analysis.forces.joints import Joint, joint_motion
-from grashof.analysis.judge.over_task import TORQUE, as_used, motion_ends, task_peaks
+from grashof.analysis.judge.coupler_motion import coupler_motions, curve_distances_of_each
+from grashof.analysis.judge.over_task import TORQUE, as_used, each_over_task, motion_ends, task_peaks
 from grashof.analysis.judge.planted import random_full_crank, random_slider_crank
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
@@ -43,6 +44,13 @@ def together(designs: list[tuple[Linkage, Verdict]], problem: Problem) -> FloatA
     return task_peaks([linkage for linkage, _ in designs], problem, [verdict for _, verdict in designs])
 
 
+def every_figure(designs: list[tuple[Linkage, Verdict]], problem: Problem) -> FloatArray:
+    linkages, verdicts = zip(*designs, strict=True)
+    over = [astuple(each) for each in each_over_task(linkages, problem, verdicts)]
+    couplers = [astuple(each) for each in coupler_motions(linkages, problem, verdicts)]
+    return np.hstack([over, couplers, curve_distances_of_each(linkages, problem, verdicts)])
+
+
 def each_alone(designs: list[tuple[Linkage, Verdict]], problem: Problem) -> FloatArray:
     return np.concatenate([together([design], problem) for design in designs])
 
@@ -64,10 +72,13 @@ def test_many_at_once_are_as_each_alone(
 ) -> None:
     """To the last digit: the figures of a design must not depend on its list."""
     problem = problem_with(dynamics)
-    found = together(designs, problem)
-    np.testing.assert_array_equal(found, each_alone(designs, problem))
-    assert np.isfinite(found[:, 1]).sum() > SOME
-    assert np.isnan(found[:, TORQUE:]).all() == (dynamics is None)
+    found = every_figure(designs, problem)
+    alone = [every_figure([design], problem) for design in designs]
+    np.testing.assert_array_equal(found, np.concatenate(alone))
+    assert (
+        np.isfinite(found[:, [1, TORQUE, -3, -1]]).sum(axis=0) > SOME
+    ).all()  # speed, fit, coupler, distance
+    assert np.isnan(together(designs, problem)[:, TORQUE:]).all() == (dynamics is None)
 
 
 def test_the_torque_alone_is_that_with_the_rest(designs: list[tuple[Linkage, Verdict]]) -> None:
