@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from grashof.problems.values.checks import each_checked, refuse
@@ -70,18 +71,16 @@ def is_of(linkage: Linkage, words: Sequence[str]) -> bool:
 
 def having(column: str) -> tuple[str, ...]:
     """The kinds that have a length or parameter, by its name or its column in tables."""
-    return tuple(
-        word
-        for word, kinds in ROWS.items()
-        if any(
-            column
-            in (
-                *kind.dimensions,
-                *(name for row in kind.parameters for name in (row.name, row.key, *row.columns)),
-            )
-            for kind in kinds
-        )
-    )
+    return tuple(word for word in ROWS if column in _names(word))
+
+
+@cache
+def _names(word: str) -> frozenset[str]:
+    """Lengths and parameters of a kind, and their columns."""
+    kinds = ROWS[word]
+    rows = [row for kind in kinds for row in kind.parameters]
+    names = [name for row in rows for name in (row.name, row.key, *row.columns)]
+    return frozenset([*names, *(name for kind in kinds for name in kind.dimensions)])
 
 
 def closing_dyad(kind: str) -> DyadKind:
