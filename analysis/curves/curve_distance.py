@@ -81,7 +81,12 @@ def curve_distances(
 
 
 def _distances_of(batch: Linkage, corners: ComplexArray, senses: IntArray) -> FloatArray:
-    """Both distances of linkages (n,), shape (2, n)."""
+    """Both distances of linkages (n,), shape (2, n); NaN where a curve has gaps."""
+    curves, found = _Curves.of(batch), np.full((2, len(senses)), np.nan)
+    if not (whole := np.isfinite(curves.p).all(axis=-1)).all():
+        if whole.any():
+            found[:, whole] = _distances_of(batch[whole], corners, senses[whole])
+        return found
     target = _even(corners, _TARGET)
     to_edge, from_edge = list[FloatArray](), list[FloatArray]()
     for row, sense in enumerate(senses.tolist()):
@@ -89,7 +94,6 @@ def _distances_of(batch: Linkage, corners: ComplexArray, senses: IntArray) -> Fl
         curve = track.start[0][::_EVERY][::sense]
         to_edge.append(_to_edges(target, curve))
         from_edge.append(_to_edges(curve, target).T)
-    curves = _Curves.of(batch)
     hausdorff = np.maximum(_from_curves(curves, corners), _from_target(curves, corners))
     return np.stack([hausdorff, np.maximum(hausdorff, _frechet(np.stack(to_edge), np.stack(from_edge)))])
 

@@ -39,6 +39,7 @@ LONG = 40  # targets: programmes of more can be stopped, and are not begun after
 MOST_ITERATIONS = 150
 MENDING = 60  # iterations of a near miss mended in place, which takes a dozen where it succeeds
 PATIENCE = (150, 400)  # iterations where the error is bounded: for trade-offs, and where the user requires it
+NEAR = 1.0  # most violation on the way from a design, which has none: others never return
 SLIGHT = 1e-6  # weight of the error beside the slack
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
 EXCHANGES = 4  # most repetitions of a solve
@@ -137,11 +138,12 @@ def _programme(
 ) -> Programme:
     with numpy_on_symbols():
         build, cost = _stated(form, constraints, own_objective)
+    near = {"theta_max_fact": NEAR} if form.most_error else {}
     options: dict[str, Any] = {
         "print_time": False,
         "show_eval_warnings": False,
         "calc_lam_p": False,
-        "ipopt": {**_IPOPT, "max_iter": max_iter},
+        "ipopt": {**_IPOPT, **near, "max_iter": max_iter},
     }
     return build.programme(cost, options, long=form.targets > LONG)
 
