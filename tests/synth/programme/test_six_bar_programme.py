@@ -111,6 +111,7 @@ def test_least_squares_with_a_fixed_length_as_another_solver_has_them() -> None:
     assert found.verdict.error_rms <= 1.001 * rms
 
 
+@pytest.mark.quick("cycle")
 @pytest.mark.parametrize("over", TransmissionOver)
 def test_transmission_that_is_required_binds(over: TransmissionOver) -> None:
     task, leg = foot()

@@ -197,6 +197,7 @@ def long_coupler(design: Design) -> Any:
     return 20.0 - design.r3
 
 
+@pytest.mark.slow
 def test_a_users_own_constraint_is_relaxed() -> None:
     found = synthesize(Problem(task=FIVE), constraints=[long_coupler], effort=0.2)
     assert not found.candidates

@@ -33,7 +33,7 @@ def atlas(name: str) -> Atlas:
     return made
 
 
-@pytest.mark.quick("luggage", "planted 7")
+@pytest.mark.quick("luggage")
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_linkages_of_another_search_lie_in_regions(name: str) -> None:
     problem, made = PROBLEMS[name], atlas(name)
@@ -96,6 +96,7 @@ def test_the_joints_of_listed_designs_lie_on_the_curves_that_are_drawn(several: 
     assert loci.transmission.max() <= several.best.values["transmission_min_cycle"] + 1e-3
 
 
+@pytest.mark.slow
 def test_the_seed_changes_nothing(several: Result) -> None:
     again = synthesize(PROBLEMS["planted 7"], seed=7)
     assert [one.id for one in again.candidates] == [one.id for one in several.candidates]
