@@ -132,7 +132,7 @@ def test_planted_curves_are_found(poses: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.quick("torque_deviation_max")
+@pytest.mark.quick("torque_deviation")
 @pytest.mark.parametrize("key", ["torque_deviation", "torque_deviation_max"])
 def test_a_limit_of_the_deviation_is_kept_while_another_goal_decides(key: str) -> None:
     problem, _ = planted_torque(3, 3)

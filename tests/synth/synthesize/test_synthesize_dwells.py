@@ -127,8 +127,7 @@ def test_limits_place_and_scale_the_linkage(
 
 
 @pytest.mark.slow
-def test_a_limited_band_that_no_design_keeps_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dwells_module, "ROUNDS", 1)
+def test_a_limited_band_that_no_design_keeps_is_named() -> None:
     task = DwellTask.from_degrees(dwell_deg=180, swing_deg=90, band_deg=1e-4)
     problem = Problem(task=task, requirements=replace(WANTED, transmission_min_deg=35))
     result = synthesize(problem, starts=12)
