@@ -171,6 +171,7 @@ def test_a_list_offers_more_transmission_for_more_error() -> None:
 FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
 
 
+@pytest.mark.slow
 @pytest.mark.quick("transmission_min_deg")
 @pytest.mark.parametrize(
     ("task", "wanted", "key"),

@@ -194,6 +194,7 @@ def couplers_of(made: FourBars, turned: float) -> tuple[ComplexArray, ComplexArr
     return a, a + d / np.abs(d) * (along + 1j * across)
 
 
+@pytest.mark.slow
 @pytest.mark.quick("0")
 @pytest.mark.parametrize("seed", [0, 1, 6, 12])
 def test_no_square_that_holds_a_generator_is_dropped(seed: int) -> None:

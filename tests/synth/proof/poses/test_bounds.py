@@ -196,6 +196,7 @@ def test_a_design_that_is_known_counts() -> None:
     assert made.pairs < known("bonnet").pairs
 
 
+@pytest.mark.slow
 def test_requirements_without_a_form_leave_a_bound() -> None:
     problem = luggage(size=(0.0, 12.5))
     proof = prove(problem)

@@ -101,6 +101,7 @@ def test_a_planted_linkage_is_listed_and_all_are_proven() -> None:
     assert min(listed) < 1e-6 * task.size
 
 
+@pytest.mark.slow
 def test_none_of_five_poses_is_proven() -> None:
     problem = problem_of(52)
     proof = prove(problem)

@@ -146,6 +146,7 @@ def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
     assert descent.nearest < np.radians(0.1)  # sharp: a bound that is 0.1 deg too low would show
 
 
+@pytest.mark.slow
 @pytest.mark.quick("2012")
 @pytest.mark.parametrize("seed", [11, 12, 2012])
 def test_no_linkage_of_a_dense_sampling_exceeds_the_bound(seed: int) -> None:
