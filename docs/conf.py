@@ -95,6 +95,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": "examples",
     "filename_pattern": r"[\\/]\w+\.py$",
     "reset_modules": ("matplotlib", plain_figures),
+    "parallel": True,  # as many examples at once as `-j` says
     "within_subsection_order": "gallery_order.Order",
     "write_computation_times": False,
     "min_reported_time": 1e6,

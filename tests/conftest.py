@@ -1,7 +1,8 @@
 """Settings of every test, and small searches for tests of anything but the best designs."""
 
+import gc
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from importlib import import_module
 from typing import Any
 
@@ -27,6 +28,17 @@ SMALL: dict[str, dict[str, Any]] = {
     "grashof.synth.results.choice": {"SEEDS": 4},
     "grashof.synth.results.explain": {"NEAR_EFFORT": 0.2},
 }  # fmt: skip
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Without the garbage collector, which would go through all modules and tests so far many times."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -30,7 +30,12 @@ def both_of(kind: Any) -> Both:
     return Both(kind)
 
 
-@pytest.fixture(params=GRID)
+QUICK = (*KINDS, "pins 2 3", "pins 2 4", "pins 3 1", "slide 4 1")  # all hosts, with and without a slide
+
+
+@pytest.fixture(
+    params=[each if each in QUICK else pytest.param(each, marks=pytest.mark.study) for each in GRID]
+)
 def both(request: pytest.FixtureRequest) -> Both:
     return both_of(request.param)
 

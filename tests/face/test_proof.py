@@ -43,6 +43,7 @@ def test_the_best_is_proven_and_named_by_its_rank(proven: Result) -> None:
     assert proof_line(behind).endswith(f"number {len(proven)} has 27.33 deg.")
 
 
+@pytest.mark.slow
 def test_none_is_proven_without_a_search_and_stated_everywhere(
     proven: Result, relaxing_only: Callable[..., None]
 ) -> None:

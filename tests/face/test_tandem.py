@@ -71,7 +71,7 @@ def _done(what: str, document: dict[str, Any], shown: bytes = b"") -> tuple[list
 
 @pytest.mark.slow
 def test_the_live_page_searches_and_follows() -> None:
-    document = document_of(problem_text(NAME), NAME)
+    document = document_of(problem_text(NAME), NAME) | {"search": {"enough": 10}}
     said, shown = _done("search", document)
     assert said[-1]["kind"] == "done"
     assert any(len(each["designs"]) >= 10 for each in said if each["kind"] == "list")

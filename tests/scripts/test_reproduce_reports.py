@@ -73,6 +73,7 @@ def listed() -> list[Any]:
 ITEMS = listed()
 
 
+@pytest.mark.slow
 def test_both_tables_are_those_of_the_audit_and_are_printed(
     reports: ModuleType, sources: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],

@@ -20,9 +20,16 @@ SLOW = [
 ]  # fmt: skip
 
 
+# One verified design is enough; of the others below, figures of several are recomputed. The gallery has all.
+ONE = [
+    "container-lid", "greenhouse-door", "jewellery-box-lid", "robot-intake", "trunk-lid", "trunk-lid-struts",
+    "twelve-timed",
+]  # fmt: skip
+
+
 @cache
 def solved(name: str) -> Result:
-    return synthesize(load(name), seed=0, enough=4)
+    return synthesize(load(name), seed=0, enough=1 if name in ONE else 4)
 
 
 def poses(design: Candidate, samples: int = 0) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Every requirement on every kind of task: judge and screen see the misses, solves keep the requirement."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import islice, pairwise
@@ -9,9 +10,9 @@ import numpy as np
 import pytest
 from matplotlib.path import Path
 
-from grashof.analysis import verify
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion, planted_path
+from grashof.analysis.judge.verify import Judge, Subject, Verdict
 from grashof.problems import (
     Box,
     DynamicsSpec,
@@ -72,6 +73,10 @@ def tasks() -> dict[str, MotionTask | PathTask]:
 TASKS = tasks()
 
 
+def verdicts_of(linkages: Sequence[FourBar], problem: Problem) -> list[Verdict]:
+    return Judge(problem.task, problem.requirements, problem=problem).verdicts([Subject(x) for x in linkages])
+
+
 class Pool:
     """Linkages of a kind of task, as screened, as they are, and with their values."""
 
@@ -88,14 +93,18 @@ class Pool:
         found = found[np.linspace(0, len(found) - 1, min(len(found), 5 * POOL)).astype(int)]
         body = None if scaled.motion is not None else found.body_angle
         batch = scaled.linkages(found.points, found.assembly, body)
-        every = ((k, self.values(batch[k], FREE)) for k in range(len(found)))
+        every = enumerate(self.values([batch[k] for k in range(len(found))], self.problem))
         sound = dict(islice(((k, v) for k, v in every if v.verdict.ok and v.verdict.branch_ok), POOL))
         self.screened: Screened = found[np.array(list(sound))]
         self.known = list(sound.values())
 
-    def values(self, linkage: FourBar, wanted: Requirements) -> Values:
-        problem = replace(self.problem, requirements=wanted)
-        return Values(linkage, verify(linkage, problem.task, wanted, problem=problem), problem)
+    def values(self, linkages: Sequence[FourBar], problem: Problem) -> list[Values]:
+        verdicts = verdicts_of(linkages, problem)
+        return [Values(one, verdict, problem) for one, verdict in zip(linkages, verdicts, strict=True)]
+
+    def verdicts(self, problem: Problem) -> list[Verdict]:
+        """Of the same linkages by other requirements."""
+        return verdicts_of([each.linkage for each in self.known], problem)
 
     def ends(self, name: str, part: str = "") -> FloatArray:
         """The least and the greatest of what a field limits, of every linkage; shape (n, 2)."""
@@ -170,11 +179,13 @@ def stated(of: Pool, name: str) -> bool:
 # Their searches take longer than half a second.
 HEAVY = {
     "a",
+    "coupler_arms",
     "frechet",
     "hausdorff",
     "joint_force_peak",
     "mechanical_advantage_min",
     "omega4_max",
+    "output_acceleration_max",
     "output_swing_deg",
     "point_acceleration_max",
     "point_speed_max",
@@ -211,9 +222,8 @@ def test_misses_are_named_and_requirements_kept(kind: str, name: str) -> None:
     clear = np.abs(beyond) > NEAR * max(1.0, float(np.ptp(beyond)))
     # A driver that has to begin at an angle is put there, and then misses the targets.
     put_there = name == "theta2_start_deg" and kind != "poses met"
-    for each, missed in zip(of.known, np.where(clear, beyond, np.nan), strict=True):
+    for verdict, missed in zip(of.verdicts(problem), np.where(clear, beyond, np.nan), strict=True):
         if np.isfinite(missed) and not put_there:
-            verdict = verify(each.linkage, problem.task, problem.requirements, problem=problem)
             assert {defect.requirement for defect in verdict.defects} == ({name} if missed > 0 else set())
     if not is_steered(name):
         return
@@ -241,7 +251,7 @@ def solved_from_those_that_miss(scaled: ScaledProblem, of: Pool, beyond: FloatAr
         start = Start.of_linkage(scaled, of.known[row].linkage, of.known[row].verdict)
         done = attempt(scaled, start, 0)
         if done.verified:
-            return of.values(done.verified[0].linkage, scaled.problem.requirements).verdict.ok
+            return verdicts_of([done.verified[0].linkage], scaled.problem)[0].ok
     return not missing
 
 
@@ -278,9 +288,9 @@ def test_misses_are_named_and_distances_kept(kind: str, side: str, pair: str) ->
         beyond = bound - low if side == "least" else high - bound
     problem = with_field(of, "distances", {pair: limits})
     clear = np.abs(beyond) > NEAR * max(1.0, float(np.ptp(beyond)))
-    for each, missed in zip(of.known, np.where(clear, beyond, np.nan), strict=True):
+    for verdict, missed in zip(of.verdicts(problem), np.where(clear, beyond, np.nan), strict=True):
         if np.isfinite(missed):
-            found = verify(each.linkage, problem.task, problem.requirements, problem=problem).defects
+            found = verdict.defects
             assert {defect.requirement for defect in found} == ({"distances"} if missed > 0 else set())
             assert missed < 0 or max(each.miss for each in found) == pytest.approx(
                 missed / problem.scale(LIMITS["distances"].quantity), rel=1e-6
@@ -357,9 +367,9 @@ def test_misses_are_named_and_regions_kept(kind: str, shape: str, name: str) -> 
     problem = with_field(of, name, region)
     size = of.problem.task.size
     clear = np.abs(beyond) > NEAR * size
-    for each, missed in zip(of.known, np.where(clear, beyond, np.nan), strict=True):
+    for verdict, missed in zip(of.verdicts(problem), np.where(clear, beyond, np.nan), strict=True):
         if np.isfinite(missed):
-            found = verify(each.linkage, problem.task, problem.requirements, problem=problem).defects
+            found = verdict.defects
             assert [defect.requirement for defect in found] == [name] * int(missed > 0)
             if missed > 0:
                 assert found[0].found == pytest.approx(missed, rel=1e-6)

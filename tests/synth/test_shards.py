@@ -66,15 +66,20 @@ def divided(kind: str, folder: Path, of: int, **more: Any) -> list[ShardOutcome]
     return [solve_shard(problem, Shard(n, of), folder, **options, **more) for n in range(of, 0, -1)]
 
 
+def one_shard(folder: Path) -> ShardOutcome:
+    """A search of two chunks."""
+    return solve_shard(load("luggage"), Shard(1, 1), folder, starts=16)
+
+
 @pytest.fixture(scope="module")
-def searched(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[ShardOutcome]]:
-    """A folder with the full search of "poses" in one shard, and its outcome."""
+def searched(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ShardOutcome]:
+    """A folder with this search, and its outcome."""
     folder = tmp_path_factory.mktemp("searched")
-    return folder, divided("poses", folder, 1)
+    return folder, one_shard(folder)
 
 
 @pytest.fixture
-def shard(searched: tuple[Path, list[ShardOutcome]], tmp_path: Path) -> Path:
+def shard(searched: tuple[Path, ShardOutcome], tmp_path: Path) -> Path:
     """A copy of it."""
     copytree(searched[0], tmp_path, dirs_exist_ok=True)
     return tmp_path
@@ -204,7 +209,7 @@ def test_shards_of_other_searches_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("damage", ["truncated", "another figure", "a verdict that is wrong"])
 @pytest.mark.usefixtures("shard")
 def test_damaged_records_are_not_merged_but_repeated(
-    damage: str, searched: tuple[Path, list[ShardOutcome]], tmp_path: Path
+    damage: str, searched: tuple[Path, ShardOutcome], tmp_path: Path
 ) -> None:
     whole = table(merge_shards(tmp_path))
     path = tmp_path / SHARDS / Shard(1, 1).folder / "000001.json"
@@ -223,7 +228,7 @@ def test_damaged_records_are_not_merged_but_repeated(
         merge_shards(tmp_path)
     if damage == "a verdict that is wrong":  # noticed by the judge alone
         path.unlink()
-    assert divided("poses", tmp_path, 1) == searched[1]
+    assert one_shard(tmp_path) == searched[1]
     assert table(merge_shards(tmp_path)) == whole
 
 

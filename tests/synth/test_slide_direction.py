@@ -115,6 +115,7 @@ def test_ranges_of_the_ground_angle_are_equal_modulo_a_turn() -> None:
     np.testing.assert_allclose([each.r2 for each in there], [each.r2 for each in here], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_range_that_no_linkage_keeps_is_widened_at_its_nearer_end(
     relaxing_only: Callable[..., None],
 ) -> None:

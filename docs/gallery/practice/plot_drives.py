@@ -50,7 +50,7 @@ print(wiper.source)
 # the bumper over it, to the height where it meets a ball; at the first pose all joints are within the frame.
 
 robot = load("robot-intake")
-best = synthesize(robot, enough=6).best
+best = synthesize(robot, enough=2).best
 plot_linkage(best, robot)
 print(robot.source)
 

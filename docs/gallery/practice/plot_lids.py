@@ -8,12 +8,13 @@ them.
 
 # %%
 # Problems of the catalogue are loaded by name. The first is a jewellery box cut by a laser: two links on each
-# side, in place of hinges, lift its lid and stand it upright behind the box.
+# side, in place of hinges, lift its lid and stand it upright behind the box. ``enough=1`` ends a search with
+# its first verified design; a larger number lists more, best first.
 
 from grashof import load, plot_linkage, synthesize
 
 box = load("jewellery-box-lid")
-best = synthesize(box, enough=6).best
+best = synthesize(box, enough=1).best
 plot_linkage(best, box)
 print(box.source)
 assert best.verdict.ok
@@ -23,7 +24,7 @@ assert best.verdict.ok
 # container on the whole way.
 
 container = load("container-lid")
-best = synthesize(container, enough=6).best
+best = synthesize(container, enough=2).best
 plot_linkage(best, container)
 print(container.source)
 assert best.verdict.ok
@@ -32,7 +33,7 @@ assert best.verdict.ok
 # The trunk lid of a car, whose front edge has to stay clear of the rear window while the lid rises.
 
 trunk = load("trunk-lid")
-best = synthesize(trunk, enough=6).best
+best = synthesize(trunk, enough=1).best
 plot_linkage(best, trunk)
 print(trunk.source)
 assert best.verdict.ok

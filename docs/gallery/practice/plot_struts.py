@@ -35,7 +35,7 @@ def plot_effort(problem: Problem, design: Candidate) -> None:
 
 
 trunk = load("trunk-lid-struts")
-best = synthesize(trunk, enough=6).best
+best = synthesize(trunk, enough=1).best
 plot_linkage(best, trunk)
 print(trunk.source)
 
@@ -52,7 +52,7 @@ assert best.values["effort_deviation"] < 10
 # effort is between the dotted lines, so that the friction of the struts holds it. Below 10 deg it closes.
 
 flap = load("kitchen-flap")
-best = synthesize(flap, enough=6).best
+best = synthesize(flap, enough=2).best
 plot_linkage(best, flap)
 
 # %%

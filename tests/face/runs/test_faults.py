@@ -184,6 +184,7 @@ def test_a_record_that_cannot_be_written_ends_the_record_alone(
     assert not (folder / "search").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("recorded")
 def test_a_kind_that_fails_costs_no_design_of_another(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

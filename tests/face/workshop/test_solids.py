@@ -13,7 +13,6 @@ from grashof.workshop.plates import Plate
 from grashof.workshop.solids import TOLERANCE, step, stl
 
 pytestmark = pytest.mark.extra
-cad = pytest.importorskip("build123d")
 
 LINKAGES = [
     FourBar(o2=(0, 0), o4=(100, 0), r2=30, r3=90, r4=80, coupler_point=(60, 40)),
@@ -22,14 +21,20 @@ LINKAGES = [
 ]
 
 
+@pytest.fixture(scope="module")
+def cad() -> Any:
+    """The kernel, which takes seconds to import: not where tests are collected, in every process."""
+    return pytest.importorskip("build123d")
+
+
 @pytest.fixture(params=LINKAGES, ids=lambda linkage: linkage.mechanism.word, scope="module")
-def plan(request: pytest.FixtureRequest) -> Plan:
+def plan(request: pytest.FixtureRequest, cad: Any) -> Plan:
     linkage: Linkage = request.param
     return plan_parts(linkage, PlateSizes(width=18, hole=5, thickness=4))
 
 
 @pytest.fixture(scope="module")
-def found(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def found(plan: Plan, cad: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The STEP file, read back."""
     path = tmp_path_factory.mktemp("solids") / "linkage.step"
     path.write_bytes(step(plan))

@@ -233,7 +233,7 @@ def test_an_independent_search_of_great_effort_finds_no_better_one(kind: type[Li
 RATED = [(BARS, (55, 110)), (SHAPER, (95, 145))]
 
 
-@pytest.mark.quick("driver-case0", "driver-case1", "coupler-case0")
+@pytest.mark.quick("driver-case1", "coupler-case0")
 @pytest.mark.parametrize("case", RATED)
 @pytest.mark.parametrize("on", LINKS)
 def test_limits_of_the_rate_are_kept_at_the_cost_of_the_lever_angle(

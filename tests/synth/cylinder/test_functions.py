@@ -143,6 +143,7 @@ def test_laws_err_as_without_a_cylinder(norm: str) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.quick("5")
 @pytest.mark.parametrize("count", [3, 5])
 def test_no_proof_covers_it(count: int) -> None:
     pairs = [0, 15, 30, 45, 60][:count], [0, 18, 40, 63, 90][:count]

@@ -123,6 +123,7 @@ def test_rates_are_quotients_of_differences(seed: int) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.quick("0-5", "1-8")
 @pytest.mark.parametrize("count", [3, 5, 8])
 @pytest.mark.parametrize("seed", range(2))
 def test_planted_functions_are_found(seed: int, count: int) -> None:

@@ -173,7 +173,7 @@ def test_the_driver_starts_within_half_a_turn_and_is_never_wrapped(
 ) -> None:
     whole = [
         replace(each, verdict=replace(each.verdict, theta2=each.verdict.theta2 + 2 * np.pi * turns))
-        for each in luggage_result.candidates
+        for each in luggage_result.candidates[:12]
     ]
     frame = to_frame(luggage_result.problem, tuple(whole))
     assert ((frame["theta2_start_deg"] > -180) & (frame["theta2_start_deg"] <= 180)).all()

@@ -92,6 +92,7 @@ def test_the_effort_of_candidates_is_the_judges(parts: tuple[PartSpec, ...]) -> 
             np.testing.assert_allclose(mine[:, -41:].ravel(), effort, rtol=1e-7, atol=1e-7)
 
 
+@pytest.mark.slow
 def test_a_planted_strut_is_found() -> None:
     """The effort that one strut gives at one temperature is wanted; its own deviation is rounding."""
     own = PartSpec("gas", (FOOT.placed(40, -70), HEAD.placed(120, 10)), (GAS[30],))
@@ -136,6 +137,7 @@ def test_two_parts_are_no_worse_than_one() -> None:
     assert excess(both, placed(both)) < 0.9 * excess(alone, placed(alone))
 
 
+@pytest.mark.slow
 def test_the_same_seed_places_the_same() -> None:
     case = case_of(PartSpec("gas", (FOOT, HEAD), GAS[::9]), stays_deg=(5.0, 45.0))
     assert placed(case, 3) == placed(case, 3)

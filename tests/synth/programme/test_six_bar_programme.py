@@ -81,6 +81,7 @@ def foot() -> tuple[PathTask, SixBar]:
     return PathTask(solve_position(leg, np.linspace(0, 2 * np.pi, 24, endpoint=False)).p, closed=True), leg
 
 
+@pytest.mark.slow
 def test_least_squares_with_a_fixed_length_as_another_solver_has_them() -> None:
     task, leg = foot()
     found = solved(task, leg, r2=(0.28, 0.28))
@@ -111,6 +112,7 @@ def test_least_squares_with_a_fixed_length_as_another_solver_has_them() -> None:
     assert found.verdict.error_rms <= 1.001 * rms
 
 
+@pytest.mark.quick("cycle")
 @pytest.mark.parametrize("over", TransmissionOver)
 def test_transmission_that_is_required_binds(over: TransmissionOver) -> None:
     task, leg = foot()

@@ -131,6 +131,7 @@ def test_no_linkage_is_lost_on_the_verge_of_another_case(
     assert (descent.lost, descent.excluded) == (0, 0)
 
 
+@pytest.mark.slow
 def test_no_linkage_is_lost_whose_angles_are_just_within_limits() -> None:
     designs = feasible_designs(luggage(driver_sense="ccw"), 12)
     curve = Required.of(ScaledProblem.of(luggage())).curve

@@ -171,6 +171,7 @@ def test_a_list_offers_more_transmission_for_more_error() -> None:
 FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
 
 
+@pytest.mark.slow
 @pytest.mark.quick("transmission_min_deg")
 @pytest.mark.parametrize(
     ("task", "wanted", "key"),
@@ -197,6 +198,7 @@ def long_coupler(design: Design) -> Any:
     return 20.0 - design.r3
 
 
+@pytest.mark.slow
 def test_a_users_own_constraint_is_relaxed() -> None:
     found = synthesize(Problem(task=FIVE), constraints=[long_coupler], effort=0.2)
     assert not found.candidates

@@ -46,7 +46,7 @@ def ways(problem: Problem, constraints: tuple[Any, ...] = ()) -> dict[str, Relax
 
 def planted_five() -> tuple[MotionTask, FourBar, Any]:
     """Five poses of which the planted linkage is the only usable one, and its verdict."""
-    for seed in range(60):
+    for seed in range(17, 60):  # those before have several
         task, _ = planted_motion(np.random.default_rng([17, seed]), poses=5)
         result = synthesize(Problem(task=task), enough=9, starts=40)
         if len(result) == 1 and result.best.verdict.transmission_min_task > np.radians(12):

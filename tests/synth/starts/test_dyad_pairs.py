@@ -115,7 +115,7 @@ def test_every_requirement_was_met_by_some_and_missed_by_others() -> None:
     assert all(seen[group, lacking] > 10 for group in screened for lacking in (False, True)), seen
 
 
-@pytest.mark.quick("0", "6", "12", "18", "24", "30")
+@pytest.mark.quick("0", "12", "24")
 @pytest.mark.parametrize("number", range(0, len(KINDS), 3))
 def test_feasible_pairs_have_no_defect(number: int) -> None:
     rng = np.random.default_rng([8, number])

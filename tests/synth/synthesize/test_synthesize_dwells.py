@@ -8,13 +8,17 @@ import pytest
 from body_coordinates import follow, start
 from body_plans import plan_of
 
+import grashof.synth.starts.six_bars.dwells as dwells_module
 from grashof.analysis import verify
 from grashof.problems import Box, DwellTask, Manufacturing, Problem, Requirements, SixBar
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.tasks.dwell_task import USUAL_TOLERANCE
 from grashof.synth import Result, synthesize
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.plain import plain, restored
-from grashof.synth.starts.six_bars.dwells import Dwells
+from grashof.synth.starts.closed_loop import Batch
+from grashof.synth.starts.six_bars.dwell_search import drawn, fitted
+from grashof.synth.starts.six_bars.dwells import FEW, Dwells
 
 STEPS = 720
 WANTED = Requirements(transmission_min_deg=40, link_ratio_max=10)
@@ -24,7 +28,7 @@ TASKS = {
 }
 
 
-@pytest.fixture(scope="module", params=TASKS)
+@pytest.fixture(scope="module", params=[pytest.param(name, marks=pytest.mark.slow) for name in TASKS])
 def found(request: pytest.FixtureRequest) -> Result:
     problem = Problem(
         task=TASKS[request.param], requirements=WANTED, manufacturing=Manufacturing(0.02), length_unit="mm"
@@ -93,7 +97,13 @@ def test_a_record_keeps_them(found: Result) -> None:
         assert again.verdict.dwell == one.verdict.dwell
 
 
-@pytest.mark.quick("limits0", "limits3")
+@pytest.fixture(scope="module")
+def shapes() -> Batch:
+    """Of one round, before limits place and scale them."""
+    aim = Dwells(ScaledProblem.of(Problem(task=TASKS["swing"], requirements=WANTED))).aim
+    return fitted(aim, drawn(aim, np.random.default_rng(1)), USUAL_TOLERANCE, FEW)
+
+
 @pytest.mark.parametrize(
     "limits",
     [
@@ -104,7 +114,11 @@ def test_a_record_keeps_them(found: Result) -> None:
         {"r6": (40, 50)},
     ],
 )
-def test_limits_place_and_scale_the_linkage(limits: dict[str, Any]) -> None:
+def test_limits_place_and_scale_the_linkage(
+    limits: dict[str, Any], shapes: Batch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dwells_module, "drawn", lambda *_: None)
+    monkeypatch.setattr(dwells_module, "fitted", lambda *_: shapes)
     problem = Problem(task=TASKS["swing"], requirements=replace(WANTED, **limits))
     scaled = ScaledProblem.of(problem)
     found = Dwells(scaled).closest_to(scaled, "size", np.random.default_rng(1))

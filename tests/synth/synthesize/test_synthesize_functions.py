@@ -126,6 +126,7 @@ def test_the_objective_decides_among_exact_designs() -> None:
     assert by_error.best.verdict.structural_error_max < 0.3 * by_mu.best.verdict.structural_error_max
 
 
+@pytest.mark.slow
 def test_boxes_lengths_and_senses_are_kept() -> None:
     wanted = Requirements(
         o2=Box((100, 100), (50, 50)), o4=Box((400, 500), (50, 50)), link_length=(100, 800),

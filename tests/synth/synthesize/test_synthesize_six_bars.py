@@ -61,7 +61,7 @@ LISTS: dict[str, Made] = {
         "stephenson-3", starts=16, transmission_min_deg=30,
     ),
 }  # fmt: skip
-QUICK, SLOW = ("five poses",), ("path", "function", "closed curve")
+SLOW = ("five poses", "path", "function", "closed curve")
 
 
 def six_bars(result: Result) -> list[Candidate]:
@@ -77,8 +77,7 @@ def by_row(designs: list[Candidate]) -> list[list[Candidate]]:
 
 
 def marked(name: str) -> Any:
-    mark = pytest.mark.slow if name in SLOW else pytest.mark.study
-    return name if name in QUICK else pytest.param(name, marks=mark)
+    return pytest.param(name, marks=pytest.mark.slow if name in SLOW else pytest.mark.study)
 
 
 @pytest.fixture(scope="module", params=[marked(name) for name in LISTS])

@@ -122,6 +122,7 @@ def test_planted_linkage_is_made_from_its_own_chain(name: str) -> None:
     assert min(missed) < 1e-8
 
 
+@pytest.mark.slow
 @pytest.mark.quick("full-crank")
 @pytest.mark.parametrize("rotatability", ["full-crank", "any"])
 def test_finds_carry_the_body_by_their_joints_alone(rotatability: str) -> None:
@@ -151,6 +152,7 @@ def test_finds_carry_the_body_by_their_joints_alone(rotatability: str) -> None:
             assert np.isinf(reach(plan, q, theta2[0])).all()
 
 
+@pytest.mark.quick("3", "8")
 @pytest.mark.parametrize("seed", [3, 4, 6, 8])
 def test_smooth_poses_have_many(seed: int) -> None:
     """That turn fully; the order is that of the judge's transmission angle."""

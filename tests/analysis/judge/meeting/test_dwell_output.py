@@ -31,6 +31,7 @@ def _outputs(linkages: SixBar, theta2: np.ndarray) -> np.ndarray:
     return x * np.cos(linkages.slide_angle_2) + y * np.sin(linkages.slide_angle_2)
 
 
+@pytest.mark.quick("pins 3 1", "slide 3 1")
 @pytest.mark.parametrize("row", ["pins 3 1", "slide 3 1", "pins 4 1", "slide 4 1"])
 def test_no_other_interval_has_a_smaller_band(row: str) -> None:
     linkages = six_bars(row, 8, np.random.default_rng(5))

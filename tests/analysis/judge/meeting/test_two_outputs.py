@@ -78,6 +78,7 @@ def test_figures_of_a_wiper_by_hand() -> None:
     assert not verdict.defects
 
 
+@pytest.mark.quick("pins 2 1")
 @pytest.mark.parametrize("row", ["pins 4 1", "pins 2 1"])
 def test_figures_are_those_of_body_coordinates(row: str) -> None:
     linkages, theta2 = six_bars(row, 6, np.random.default_rng(3)), np.linspace(0, TURN, 721)

@@ -155,6 +155,7 @@ def without_sizes(**given: Any) -> Requirements:
     return Requirements(exact=True, link_length=(0, 1e4), link_ratio_max=1e4, coupler_arms=(0, 1e4), **given)
 
 
+@pytest.mark.quick("hosts0", "hosts2")
 @pytest.mark.parametrize("hosts", HOSTS)
 def test_a_driver_that_the_second_loop_stops_does_not_turn_fully(hosts: tuple[int, int]) -> None:
     linkage, low, high = stopped(hosts)
@@ -172,6 +173,7 @@ def test_a_driver_that_the_second_loop_stops_does_not_turn_fully(hosts: tuple[in
         assert np.ptp(verdict.theta2) == pytest.approx(theta2[-1] - theta2[0])
 
 
+@pytest.mark.quick("hosts1", "hosts3")
 @pytest.mark.parametrize("hosts", HOSTS)
 def test_a_motion_does_not_pass_where_the_second_loop_is_open(hosts: tuple[int, int]) -> None:
     """Two poses are joined the longer way round; three out of order are not met, though they would be."""

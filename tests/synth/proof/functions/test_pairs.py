@@ -79,7 +79,7 @@ def test_forms_hold_the_ground_pivot_of_every_point(seed: int, half: float) -> N
     assert half > 0.003 or not far.any() or patches.bounded[far].mean() < 0.5
 
 
-@pytest.mark.quick("task-any-3", "cycle-full-crank-4")
+@pytest.mark.quick("cycle-full-crank-4")
 @pytest.mark.parametrize("count", [3, 4])
 @pytest.mark.parametrize(
     ("over", "rotatability"),
@@ -119,6 +119,7 @@ def test_the_best_of_few_pairs_or_none_is_proven(count: int, seed: int) -> None:
     assert (found.proof.claim is Claim.NONE) == (not found.candidates)
 
 
+@pytest.mark.slow
 def test_coinciding_poles_are_said_to_be_open() -> None:
     problem = Problem(task=FunctionTask.from_degrees([0, 30, 60, 90], [0, 20, 35, 45]))
     proof = synthesize(problem, enough=5).proof
@@ -193,6 +194,7 @@ def couplers_of(made: FourBars, turned: float) -> tuple[ComplexArray, ComplexArr
     return a, a + d / np.abs(d) * (along + 1j * across)
 
 
+@pytest.mark.slow
 @pytest.mark.quick("0")
 @pytest.mark.parametrize("seed", [0, 1, 6, 12])
 def test_no_square_that_holds_a_generator_is_dropped(seed: int) -> None:
@@ -243,6 +245,7 @@ def test_a_planted_function_is_listed_and_all_are_proven() -> None:
     assert min(float(np.abs(each - [1, 0.4, 1.1, 0.8]).max()) for each in ratios) < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.quick("4")
 @pytest.mark.parametrize("count", [3, 4])
 def test_bounds_of_couplers_are_those_of_outputs_by_the_exchange(count: int) -> None:

@@ -33,7 +33,7 @@ def atlas(name: str) -> Atlas:
     return made
 
 
-@pytest.mark.quick("luggage", "planted 7")
+@pytest.mark.quick("luggage")
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_linkages_of_another_search_lie_in_regions(name: str) -> None:
     problem, made = PROBLEMS[name], atlas(name)
@@ -64,6 +64,7 @@ def several() -> Result:
     return synthesize(PROBLEMS["planted 7"])
 
 
+@pytest.mark.slow
 def test_the_list_has_the_best_of_every_region(several: Result) -> None:
     assert several.proof is not None
     assert several.proof.claim is Claim.BEST
@@ -76,6 +77,7 @@ def test_the_list_has_the_best_of_every_region(several: Result) -> None:
         assert best >= seen - 1e-3
 
 
+@pytest.mark.slow
 def test_the_joints_of_listed_designs_lie_on_the_curves_that_are_drawn(several: Result) -> None:
     loci, size = several.loci, several.problem.task.size
     assert loci is not None
@@ -96,12 +98,13 @@ def test_the_joints_of_listed_designs_lie_on_the_curves_that_are_drawn(several: 
     assert loci.transmission.max() <= several.best.values["transmission_min_cycle"] + 1e-3
 
 
+@pytest.mark.slow
 def test_the_seed_changes_nothing(several: Result) -> None:
     again = synthesize(PROBLEMS["planted 7"], seed=7)
     assert [one.id for one in again.candidates] == [one.id for one in several.candidates]
 
 
-def test_a_constraint_of_ones_own_is_kept(several: Result) -> None:
+def test_a_constraint_of_ones_own_is_kept() -> None:
     problem = load("luggage")
     found = synthesize(problem, constraints=[lambda design: design.r1 - design.r3 + 1.0], enough=10)
     assert found.candidates

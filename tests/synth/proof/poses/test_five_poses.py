@@ -101,9 +101,9 @@ def test_a_planted_linkage_is_listed_and_all_are_proven() -> None:
     assert min(listed) < 1e-6 * task.size
 
 
+@pytest.mark.slow
 def test_none_of_five_poses_is_proven() -> None:
     problem = problem_of(52)
-    assert certified(problem).within == 0
     proof = prove(problem)
     assert (proof.claim, proof.complete, proof.lower) == (Claim.NONE, True, None)
 

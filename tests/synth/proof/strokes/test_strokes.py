@@ -77,6 +77,7 @@ def test_limits_of_sizes_are_counted(problem: Problem, best: float) -> None:
     assert proof.lower == pytest.approx(best, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_of_several_kinds_the_first_is_bounded_and_its_rank_stated() -> None:
     result = synthesize(problem_of(["four-bar", "inverted-slider-crank"], 2.6, 80.0), enough=3)
     assert result.best.linkage.mechanism.word == "inverted-slider-crank"
@@ -156,6 +157,7 @@ def test_a_shaper_under_a_limit_that_it_just_misses_is_not_none(name: str, value
         assert bounded(problem).none is not some
 
 
+@pytest.mark.slow
 def test_prove_decides_whether_there_is_a_design() -> None:
     proof = prove(load("quick-return"))
     assert proof.claim is Claim.BEST

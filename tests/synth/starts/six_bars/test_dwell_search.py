@@ -37,6 +37,7 @@ def _closed(
     return e - d, np.minimum(sine, np.abs(((e - at_c).conj() * (e - d)).imag) / (r5 * r6))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(  # `scripts/benchmarks/dwells.py` has others
     "case",
     [

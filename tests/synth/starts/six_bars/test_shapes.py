@@ -109,6 +109,7 @@ LIMITED = Requirements(
 )  # fmt: skip
 
 
+@pytest.mark.quick("watt-1-RRR-(3, 4)", "stephenson-3-RRR-(3, 1)")
 @pytest.mark.parametrize("row", [row for row in ROWS if not row.loops[-1].dyad.slides], ids=named)
 def test_limits_have_the_derivatives_of_differences_where_the_fit_is_exact(row: Mechanism) -> None:
     shapes, target = Shapes(row), targets()

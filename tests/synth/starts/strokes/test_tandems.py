@@ -63,6 +63,7 @@ def test_random_shapes_have_both_swings_and_turn_fully(hosts: tuple[int, int]) -
             assert peaks[k] == pytest.approx(values["output_acceleration_max"], rel=2e-2)
 
 
+@pytest.mark.quick("link 4")
 @HOSTS
 def test_time_ratios_are_met_too(hosts: tuple[int, int]) -> None:
     ratios = (1.12, None) if hosts == DRIVEN_BY_4 else (1.12, 1.05)
