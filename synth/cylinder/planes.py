@@ -100,11 +100,11 @@ def planes_of(
 
 def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Performance:
     """Performance of cylinders between points of a plane and bases on the ground, each of shape (K,)."""
-    arm = point[:, None] * plane.axis
-    out = plane.origin + arm - base[:, None]
-    way = plane.slide + 1j * plane.turn * arm
-    length, speed = np.abs(out), np.abs(way)
-    with np.errstate(invalid="ignore", divide="ignore"):
+    out = plane.origin + point[:, None] * plane.axis - base[:, None]
+    way = plane.slide + point[:, None] * (1j * plane.turn * plane.axis)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        # far quicker than np.abs, which guards against the ends of the range of floats
+        length, speed = (np.sqrt(each.real**2 + each.imag**2) for each in (out, way))
         change = (out.real * way.real + out.imag * way.imag) / length
         levers = finite_or(change / speed, 0.0)
         force = np.zeros(len(point))
