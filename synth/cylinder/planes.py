@@ -103,8 +103,7 @@ def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Perfor
     out = plane.origin + point[:, None] * plane.axis - base[:, None]
     way = plane.slide + point[:, None] * (1j * plane.turn * plane.axis)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        # far quicker than np.abs, which guards against the ends of the range of floats
-        length, speed = (np.sqrt(each.real**2 + each.imag**2) for each in (out, way))
+        length, speed = _magnitude(out), _magnitude(way)
         change = (out.real * way.real + out.imag * way.imag) / length
         levers = finite_or(change / speed, 0.0)
         force = np.zeros(len(point))
@@ -121,6 +120,11 @@ def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Perfor
         ratio = finite_or(np.maximum(first, last) / closed, np.inf)
     extremes = rate.min(axis=1), rate.max(axis=1)
     return Performance(levers, levers.min(axis=1), closed, ratio, force, *extremes)
+
+
+def _magnitude(values: ComplexArray) -> FloatArray:
+    """Absolute values, quicker than by np.abs, which guards against the ends of the range of floats."""
+    return np.sqrt(values.real**2 + values.imag**2)
 
 
 def finite_or(values: FloatArray, otherwise: float) -> FloatArray:

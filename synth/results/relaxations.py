@@ -8,7 +8,7 @@ from typing import TypeAlias, TypeVar
 
 import numpy as np
 
-from grashof.problems import Problem, ProblemError
+from grashof.problems import Linkage, Problem, ProblemError
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import all_judged_again, judged_again
 from grashof.synth.programme.start import UNSMOOTH, DrivenLinkage, Proposal, Start
@@ -183,8 +183,9 @@ def _begun(
     finder = finder_for(way.loose)
     if isinstance(finder, DesignFinder):
         designs = finder.closest_to(scaled, way.key, rng)
-        # nothing remains to be solved; but a cylinder is chosen by the requirements
-        finished = scaled.problem.driver is None and not any(isinstance(each, Start) for each in designs)
+        # nothing remains to be solved; but without its cylinder a linkage is given one by the requirements
+        known = DrivenLinkage if scaled.problem.driver is not None else (Linkage, DrivenLinkage)
+        finished = all(isinstance(each, known) for each in designs)
         return scaled if finished else way.loose, designs, []
     near = rejudged(scaled, finder.near(rng, plan.near))
     most = plan.solves if finder.freedom else FINISHED
