@@ -162,12 +162,10 @@ def _distinct(
     room: Room, points: ComplexArray, bases: ComplexArray, most: int, least: float = 0.02
 ) -> list[int]:
     """At most `most` cylinders, each at least `least` of the room from every better one, in their order."""
-    size = float(np.hypot(*(room.high - room.low))) + room.reach
-    kept: list[int] = []
-    for k in range(len(points)):
-        apart = [abs(points[k] - points[j]) + abs(bases[k] - bases[j]) for j in kept]
-        if min(apart, default=np.inf) > least * size:
-            kept.append(k)
-        if len(kept) == most:
-            break
+    close = least * (float(np.hypot(*(room.high - room.low))) + room.reach)
+    kept, left = list[int](), np.arange(len(points))
+    while len(left) and len(kept) < most:
+        best = int(left[0])
+        kept.append(best)
+        left = left[np.abs(points[left] - points[best]) + np.abs(bases[left] - bases[best]) > close]
     return kept

@@ -12,17 +12,20 @@ from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.designs.ranking import ranked
+from grashof.synth.programme.start import Round
 from grashof.synth.programme.user_functions import relaxed_by_own
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.larger_zones import up, wider
-from grashof.synth.results.relaxations import relaxations
+from grashof.synth.results.relaxations import relaxations, work_of
 from grashof.synth.results.result import BETWEEN, WOULD
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.chunks import solve
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import search_designs
+from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.strokes.limit_positions import stroke_kind_of
 from grashof.synth.theory.limit_positions import best_transmission
 from grashof.synth.theory.stopping import StopRequested
@@ -31,7 +34,9 @@ STOPPED = "no design: the search was stopped before it found one"
 UNEXPLAINED = "no design: the search for the reason was stopped"
 SHOWN = 8  # least-squares designs that stand for the nearest
 ALTERNATIVES = 6  # that the note names
-NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
+NEAR_EFFORT, NEAR, NEAR_SOLVES = 0.2, 8, 24  # of a search for designs that come near
+LONGER = 2.0  # effort with which that search is a whole one, even if it takes long
+LATER = 0.3  # share of the usual work for a second round of relaxations, of least squares
 GOOD = float(np.radians(40))  # transmission angle that textbooks recommend (Norton, sec. 3.3)
 LITTLE = float(np.radians(1))  # below it more digits are shown
 _HALVINGS = 12
@@ -70,7 +75,8 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     finder = finder_for(scaled)
     rng = np.random.default_rng(np.random.SeedSequence(run.search.seed, spawn_key=(0,)))
     known = [one.candidate for one in rejected if one.candidate is not None]
-    ways = relaxations(scaled, known, rng, run) + wider(scaled.problem, scaled.constraints, known)
+    relaxed = relaxations(scaled, known, rng, run)
+    ways = relaxed.found + wider(scaled.problem, scaled.constraints, known)
     squares = None if run.ended() or not _may_be_near(scaled) else _least_squares(scaled, run)
     ranks = () if squares is None else ranked(squares.scaled.problem, squares.best)
     near = [_Near(one.verdict, judged_again(scaled, one)) for one in ranks[:SHOWN]]  # the nearest first
@@ -86,26 +92,29 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
                 words = f"exact = false ({_comes_within(scaled, one, then='then ')})"
                 alternatives.append((miss, words, one.candidate))
         alternatives.sort(key=lambda one: one[:2])
-        note = _ways_note(why, [words for _, words, _ in alternatives[:ALTERNATIVES]])
+        named = [words for _, words, _ in alternatives[:ALTERNATIVES]]
+        note = _ways_note(why, named, cut=_cut(scaled, relaxed.effort, run))
         return Explanation(note, tuple(candidate for _, _, candidate in alternatives))
     if near:
         note = f"no design: {why or 'exact: none'}; {_comes_within(scaled, near[0])}, with exact = false"
-        return Explanation(note, tuple(one.candidate for one in near))
-    relaxed = [*finder.relaxed(rng), *relaxed_by_own(scaled, ledger.latest)]
-    nearest = () if run.ended() else closest_misses(run.solve(scaled, relaxed, len(rejected)))
+        return Explanation(note + _cut(scaled, relaxed.effort, run), tuple(one.candidate for one in near))
+    starts = [*finder.relaxed(rng), *relaxed_by_own(scaled, ledger.latest)]
+    nearest = () if run.ended() else closest_misses(run.solve(scaled, starts, len(rejected)))
     nearest = nearest or closest_misses(rejected)
     if squares is not None and not _misses_one(nearest) and not run.ended():
         missed = [one.candidate for one in squares.rejected if one.candidate is not None]
+        again = relaxations(squares.scaled, missed, rng, run, most=LATER)
+        relaxed = max(relaxed, again, key=lambda one: one.effort)
         loose = [
             (each, _Near(each.candidate.verdict, judged_again(scaled, each.candidate)))
-            for each in relaxations(squares.scaled, missed, rng, run)
+            for each in again.found
         ]
         loose = [(each, one) for each, one in loose if _miss(one, scaled.problem.task.size) < 1]
         named = [f"{each.words} ({_comes_within(scaled, one)})" for each, one in loose[:ALTERNATIVES]]
         if named:
-            note = _ways_note(why, named, "with exact = false ")
+            note = _ways_note(why, named, "with exact = false ", cut=_cut(scaled, relaxed.effort, run))
             return Explanation(note, tuple(one.candidate for _, one in loose))
-    return Explanation(_none_note(scaled, nearest, why), nearest)
+    return Explanation(_none_note(scaled, nearest, why) + _cut(scaled, relaxed.effort, run), nearest)
 
 
 def _misses_one(nearest: tuple[Candidate, ...]) -> bool:
@@ -133,9 +142,22 @@ def _least_squares(scaled: ScaledProblem, run: Run) -> Ledger:
     # Zones apart, an objective is of no effect there.
     objective = scaled.problem.objective if scaled.bounded else Objective()
     problem = replace(scaled.problem, requirements=wanted, objective=objective)
-    search = replace(run.search, effort=NEAR_EFFORT, enough=min(run.search.enough, NEAR))
+    enough, starts = min(run.search.enough, NEAR), min(run.search.starts, int(NEAR_SOLVES / work_of(problem)))
+    search = replace(run.search, effort=NEAR_EFFORT, enough=enough, starts=starts)
     alone = replace(run, search=search, progress=None, seconds=dict(run.seconds))
-    return search_designs(scaled.of_problem(problem), alone)
+    squares = scaled.of_problem(problem)
+    finder = finder_for(squares)
+    if not isinstance(finder, DesignFinder) or not _takes_long(squares) or run.search.effort >= LONGER:
+        return search_designs(squares, alone)
+    ledger = Ledger(squares, search, finder.exhausted)
+    ledger.begin(Round(finder.closest_to(squares, "exact", np.random.default_rng(search.seed)), {}))
+    solve(ledger.latest, ledger, alone)
+    return ledger
+
+
+def _takes_long(scaled: ScaledProblem) -> bool:
+    """Whether a whole search is too long for an explanation."""
+    return bool(np.isfinite(finder_for(scaled).searches_near))
 
 
 def _may_be_near(scaled: ScaledProblem) -> bool:
@@ -149,9 +171,18 @@ def _miss(near: _Near, size: float) -> float:
     return float(np.nanmax([*verdict.angle_error, *verdict.output_error, verdict.error_max / size]))
 
 
-def _ways_note(why: str, words: list[str], given: str = "") -> str:
+def _cut(scaled: ScaledProblem, effort: float, run: Run) -> str:
+    """A clause for an explanation that was cut short: the effort that would have left nothing out."""
+    if _takes_long(scaled) and _may_be_near(scaled):
+        effort = max(effort, LONGER)
+    if effort <= max(run.search.effort, 1.0):
+        return ""
+    return f"; the explanation is cut short, effort = {np.ceil(effort):g} gives the full one"
+
+
+def _ways_note(why: str, words: list[str], given: str = "", cut: str = "") -> str:
     """The note that names single requirements, each sufficient together with `given`."""
-    reason = f"no design: {why}" if why else "no design meets all requirements"
+    reason = (f"no design: {why}" if why else "no design meets all requirements") + cut
     alone = f"{given}{'this' if len(words) == 1 else 'each of these'}{WOULD}"
     return f"{reason}; {alone}: {BETWEEN.join(words)}"
 

@@ -91,17 +91,31 @@ def relaxation(
     problem: Problem, constraints: Sequence[Constraint], key: str, candidate: Candidate
 ) -> Relaxation | None:
     """The relaxation that a judged design needs of a requirement; None where it misses another one, too."""
+    return first_accepted(problem, proposals(problem, constraints, key, candidate))
+
+
+def first_accepted(problem: Problem, proposed: Sequence[Relaxation]) -> Relaxation | None:
+    """The first of some relaxations under which the judge accepts its design."""
+    return next(
+        (one for one in proposed if accepted(one.candidate, problem, one.requirements, one.constraints)), None
+    )
+
+
+def proposals(
+    problem: Problem, constraints: Sequence[Constraint], key: str, candidate: Candidate
+) -> list[Relaxation]:
+    """Relaxations of a requirement under which a judged design may do, the least first; not yet accepted."""
     missed = [defect for defect in candidate.verdict.defects if defect.requirement == key]
     if key not in ("rotatability", *UNSMOOTH) and len(missed) < len(candidate.verdict.defects):
-        return None
+        return []
     miss, own = max((defect.miss for defect in missed), default=1.0), tuple(constraints)
-    # rounded to the loose side; the judge has to accept the design with it
+    made = list[Relaxation]()
     for change, words in _changes(problem, own, key, missed):
+        # rounded to the loose side; the judge has to accept the design with it
         relaxed = change.pop("constraints", own)
-        wanted = replace(problem.requirements, **change)
-        if accepted(candidate, problem, wanted, relaxed):
-            return Relaxation(key, words, wanted, relaxed, candidate, miss, words.count(" instead of "))
-    return None
+        wanted, figures = replace(problem.requirements, **change), words.count(" instead of ")
+        made.append(Relaxation(key, words, wanted, relaxed, candidate, miss, figures))
+    return made
 
 
 def accepted(

@@ -30,7 +30,7 @@ FOUND = 1e-5  # sizes: rms error of a start for an exact task
 PLACED = 3  # targets with places, which fix the place of a linkage
 ANCHORS = 6  # choices of others in a round where there are fewer
 AROUND, LATER = 0.7, (0.2, 1.5)  # where they are: sizes, and rad after the last target
-NEAR = 20  # linkages near the requirements are enough
+NEAR, NEAR_PART = 20, 2  # linkages near the requirements are enough, from this part of the draws
 
 
 class CouplerSearch(StartFinder):
@@ -48,13 +48,15 @@ class CouplerSearch(StartFinder):
         """Why a single position needs no linkage; empty for others."""
         return single_position(self.scaled)
 
-    def near(self, rng: np.random.Generator) -> Screened:
+    def near(self, rng: np.random.Generator, _share: float = 1.0, /) -> Screened:
         """Linkages of one round of the search."""
-        return search(self.scaled, NEAR, rng)
+        return search(self.scaled, NEAR, rng, part=NEAR_PART)
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
         """Starts that may miss what no linkage meets."""
-        drawn, free = (search(self.scaled, 1, rng, to_boxes=to_boxes) for to_boxes in (True, False))
+        drawn, free = (
+            search(self.scaled, 1, rng, to_boxes=to_boxes, part=NEAR_PART) for to_boxes in (True, False)
+        )
         return relaxed_starts(self.scaled, drawn) or relaxed_starts(self.scaled, free)
 
 
@@ -100,17 +102,18 @@ def searched_round(scaled: ScaledProblem, enough: int, rng: np.random.Generator)
 
 
 def search(
-    scaled: ScaledProblem, enough: int, rng: np.random.Generator, *, to_boxes: bool = True
+    scaled: ScaledProblem, enough: int, rng: np.random.Generator, *, to_boxes: bool = True, part: int = 1
 ) -> Screened:
-    """One round of the search, drawn towards the pivots' boxes or not, its linkages judged."""
+    """One round of the search, or a `part` of it, drawn towards boxes of pivots or not, linkages judged."""
     target = SearchTargets.of(scaled)
     if not to_boxes:
         target = replace(target, wanted=replace(target.wanted, o2=None, o4=None))
     lacking = PLACED - int(np.count_nonzero(target.weights))
     if lacking <= 0:
-        return _searched(scaled, target, target, enough, rng)
+        return _searched(scaled, target, target, enough, rng, part)
     anchored = [_anchored(target, lacking, rng) for _ in range(ANCHORS)]
-    return Screened.joined([_searched(scaled, target, each, enough, rng, ANCHORS) for each in anchored])
+    parts = part * ANCHORS
+    return Screened.joined([_searched(scaled, target, each, enough, rng, parts) for each in anchored])
 
 
 def _searched(

@@ -53,6 +53,8 @@ from grashof.synth.theory.five_poses import five_pose_dyads, five_pose_guides
 
 LINES, CELL = 800, 0.01  # of the traced curves, in sizes
 PAIRS, SAMPLED_PAIRS, NEAR_PAIRS = 1_000_000, 200_000, 150_000  # judged
+# Judged, and followed along the motion, where near ones are enough.
+SOME_PAIRS, FEWEST_PAIRS, FOLLOWED = 300_000, 10_000, 12_000
 QUICK_LINES, QUICK_SAMPLES, QUICK_PAIRS = 100, 400, 10_000  # of a first quick pass, a twentieth of the time
 QUICK_STARTS = 2
 SEARCHES = 3  # rounds of the search for points after that of sampled dyads
@@ -124,7 +126,7 @@ class Parallelograms(ExactPoses):
         starts = parallelogram_starts(self.scaled, enough, rng)
         return Round(starts, {"feasible finds": len(starts)})
 
-    def near(self, rng: np.random.Generator) -> Screened:
+    def near(self, rng: np.random.Generator, _share: float = 1.0, /) -> Screened:
         """Parallelogram linkages, feasible or not."""
         return parallelograms(self.scaled, rng)
 
@@ -144,24 +146,28 @@ class DyadPairs(ExactPoses):
     def dyads(self, rng: np.random.Generator) -> Dyads:
         """Dyads that meet the poses."""
 
-    def pairs(self, dyads: Dyads, most: int | None = None) -> Screened:
-        """Pairs that meet all requirements but, perhaps, the user's constraints; of at most `most`."""
+    def pairs(self, dyads: Dyads, most: int | None = None, looked: int = PAIRS) -> Screened:
+        """Pairs that meet all requirements but, perhaps, the user's constraints; of at most `most`.
+
+        Motions of at most `looked` of them are followed, where areas or limits along them are stated.
+        """
         scaled = self.scaled
         most = most or (SAMPLED_PAIRS if len(scaled.targets) < 4 else PAIRS)
         dyads = with_stated_joints(scaled, dyads)
-        return fully_screened(scaled, screen(self.motion, scaled.targets[0], dyads, scaled.wanted, most))
+        pairs = screen(self.motion, scaled.targets[0], dyads, scaled.wanted, most)
+        return fully_screened(scaled, pairs[:: -(-len(pairs) // looked) or 1])
 
-    def near_pairs(self, dyads: Dyads) -> Screened:
+    def near_pairs(self, dyads: Dyads, most: int | None = None) -> Screened:
         """Pairs, feasible or not, and the violations of each, except of the user's own requirements."""
-        return near_misses(self.motion, self.scaled.targets[0], dyads, self.scaled.wanted, NEAR_PAIRS)
+        return near_misses(self.motion, self.scaled.targets[0], dyads, self.scaled.wanted, most or NEAR_PAIRS)
 
-    def near(self, rng: np.random.Generator) -> Screened:
+    def near(self, rng: np.random.Generator, share: float = 1.0, /) -> Screened:
         """Pairs that meet all requirements; near misses where none does."""
-        dyads = self.dyads(rng)
-        pairs = self.pairs(dyads)
+        dyads, most = self.dyads(rng), max(FEWEST_PAIRS, int(share * SOME_PAIRS))
+        pairs = self.pairs(dyads, most, max(1, int(share * FOLLOWED)))
         if pairs.feasible.any():
             return pairs[pairs.feasible]
-        return fully_screened(self.scaled, self.near_pairs(dyads))
+        return fully_screened(self.scaled, self.near_pairs(dyads, most))
 
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
         """Starts that may miss what no linkage meets."""

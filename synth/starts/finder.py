@@ -46,6 +46,11 @@ class Finder(ABC):
         return np.inf
 
     @property
+    def searches_near(self) -> float:
+        """Most searches for near misses, where these take long, and rounds come near limits by themselves."""
+        return np.inf
+
+    @property
     def rounds_a_pass(self) -> int:
         """Rounds after which the search may begin again, with other random numbers."""
         return 1
@@ -81,8 +86,8 @@ class StartFinder(Finder):
     """A finder from whose starts a programme is solved."""
 
     @abstractmethod
-    def near(self, rng: np.random.Generator) -> Screened:
-        """Linkages that meet the requirements, or nearly do."""
+    def near(self, rng: np.random.Generator, share: float = 1.0, /) -> Screened:
+        """Linkages that meet the requirements, or nearly do, by this share of the work for an explanation."""
 
 
 class DesignFinder(Finder):

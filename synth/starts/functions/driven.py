@@ -45,7 +45,7 @@ def through_by_cylinder(
             return pool
     starts = driven_starts(aims, pairs.desired, rng, effort)
     found = _met(pairs, starts, pairs.limits, ENDS)
-    return found if len(aims.task) == kind.EXACT else _raised(pairs, found)
+    return found if len(aims.task) == kind.EXACT else _raised(pairs, found, effort)
 
 
 def _met(pairs: Pairs, starts: Generators, limits: ShapeLimits, most: int) -> Generators:
@@ -60,11 +60,11 @@ def _met(pairs: Pairs, starts: Generators, limits: ShapeLimits, most: int) -> Ge
     return within.kept(found)
 
 
-def _raised(pairs: Pairs, found: Generators) -> Generators:
+def _raised(pairs: Pairs, found: Generators, effort: float) -> Generators:
     """Some designs, and others with ever greater transmission angles, by halving."""
     span = pairs.limits.span
     pool, low, high = found, -1.0, float(np.pi / 2)
-    for _ in range(HALVINGS):
+    for _ in range(round(HALVINGS * min(effort, 1.0))):
         if not len(pool) or stop_requested():
             break
         worst = np.arccos(np.minimum(pool.worst_cosine(span), 1.0))

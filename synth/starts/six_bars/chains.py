@@ -31,10 +31,8 @@ SENSES = {"ccw": [1.0], "cw": [-1.0]}
 NO_ERROR = 1e-22  # sizes squared, or rad squared
 # Numbers of the best that continue, their steps, and the weight of limits, in sizes.
 STAGES = ((300, 8, 0.1), (60, 15, 1.0), (20, 150, 10.0))
-
 FIRST_STAGES = ((400, 8, 0.1), (100, 12, 1.0), (30, 20, 10.0))  # where a fit to more targets follows
-
-QUICK_STAGES = ((150, 8, 0.1), (50, 15, 1.0), (16, 60, 10.0))
+QUICK_STAGES = ((150, 6, 0.1), (50, 10, 1.0), (16, 30, 10.0))
 
 
 def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Generator) -> Batch:

@@ -34,7 +34,8 @@ from grashof.synth.theory.distinct import origin_of, pick_apart, signatures
 from grashof.synth.theory.six_bars.five_poses import six_bars_through
 from grashof.synth.theory.six_bars.link_motions import POSES
 
-DRAWS, QUICK_DRAWS = 3000, 1000  # fewer where the reason for an empty list is looked for
+# Fewer where the reason for an empty list is looked for, among fewer rows.
+DRAWS, QUICK_DRAWS, QUICK_ROWS = 3000, 600, 2
 FEW_TARGETS = 16  # of a longer untimed task, among which linkages are found first
 CLOSED_TARGETS = 48  # places on a closed path, so that no curve fits the points alone
 ROUND = 512  # driver angles for the length of a curve
@@ -58,6 +59,7 @@ class SixBars(DesignFinder):
     """Six-bars through targets, or of least error."""
 
     beginning: ClassVar[str] = "looking for six-bars"
+    searches_near: ClassVar[float] = 2
     exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
 
     @cached_property
@@ -158,11 +160,11 @@ class SixBars(DesignFinder):
         return [design.linkage]
 
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> Sequence[Proposal]:
-        """The best of a round for every row."""
+        """The best of a quick round for the first rows."""
         del required, key
         return [
             each
-            for row, level in self.plan[: len(self.rows)]
+            for row, level in self.plan[: min(len(self.rows), QUICK_ROWS)]
             for each in self._found(row, level, rng, 1, quick=True)[:CLOSE]
         ]
 

@@ -27,7 +27,7 @@ from grashof.synth.starts.strokes.tandem_search import (
 from grashof.synth.starts.strokes.tandem_shapes import DRIVEN_BY_CRANK, Tandems
 from grashof.synth.theory.distinct import pick_apart
 
-FEW = 20  # generations where the reason for an empty list is looked for
+FEW = 12  # generations where the reason for an empty list is looked for
 APART, JUDGED = 0.1, 24  # between designs of a round, as `distinct` counts, and their number
 NEAREST = 3
 PHASES, SAME = 72, 1e-4  # angles between both arms of a crank; difference of scores that are equal

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,25 @@ def test_where_least_squares_finds_nothing_either_it_is_not_promised() -> None:
     assert "exact" not in result.note
     assert result.note.startswith("no design meets all requirements; each of these alone would do: ")
     assert "r1 up to 60 instead of 50" in result.note
+
+
+@pytest.mark.slow
+def test_an_explanation_that_is_cut_short_names_the_effort_of_the_full_one(
+    relaxing_only: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    relaxing_only("r1", "order")
+    module = import_module("grashof.synth.results.relaxations")
+    monkeypatch.setattr(module, "SOLVES", 4)
+    monkeypatch.setattr(module, "SOLVES_IN_ALL", 5)
+    task = PathTask([[0, 0], [10, 5], [20, 7]])
+    wanted = Requirements(o2=Box((0, 0), (-30, -30)), o4=Box((60, 60), (-30, -30)), r1=(10, 50))
+    brief, full = (
+        synthesize(Problem(task=task, requirements=wanted), starts=8, effort=effort).note for effort in (1, 2)
+    )
+    said, ways = note_parts(brief)
+    assert "; the explanation is cut short, effort = 2 gives the full one; this alone would do" in said
+    assert ways == note_parts(full)[1] == ["r1 up to 60 instead of 50"]
+    assert "cut short" not in full
 
 
 @pytest.mark.study

@@ -34,7 +34,7 @@ def ways(problem: Problem, constraints: tuple[Any, ...] = ()) -> dict[str, Relax
     scaled = ScaledProblem.of(problem, constraints)
 
     run = Run(problem.search, Work(), lambda: False)
-    found = relaxations(scaled, [], np.random.default_rng(0), run)
+    found = relaxations(scaled, [], np.random.default_rng(0), run).found
     assert [way.miss for way in found] == sorted(way.miss for way in found)
     for way in found:
         linkage = way.candidate.linkage
