@@ -18,6 +18,7 @@ from grashof.analysis.judge.meeting.function_start import (
 )
 from grashof.analysis.judge.meeting.inputs import ByAngle, ByLength, input_of
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.start_limits import start_limits
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks
@@ -112,7 +113,10 @@ def met_as_function(
     if by is not None:
         if task.mirror is not None:
             begun = begins_mirrored(linkage, task, by, senses) or begins_mirrored(linkage, task, by, (1, -1))
-        begun = begun or begins(linkage, task, by, exact, start, senses, least)
+        misses = start_limits(linkage, task, wanted, by)
+        begun = begun or begins(linkage, task, by, exact, start, senses, least, misses)
+        if misses is not None:
+            begun = begun or begins(linkage, task, by, exact, start, senses, least)
         # A linkage that misses a requirement from every start is reported where its error is least.
         begun = begun or begins(linkage, task, by, exact, start, senses)
         begun = begun or begins(linkage, task, by, exact, start)

@@ -151,7 +151,7 @@ class Functions(DesignFinder):
             mine[int(np.argmin(np.nan_to_num(fit, nan=np.inf)))].append(batch)
         for search, several in zip(every, mine, strict=True):
             if several:
-                yield search, self.aims.kind.joined(several)
+                yield search, self.aims.made.joined(several)
 
     @property
     def _in_order(self) -> bool:

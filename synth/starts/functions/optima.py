@@ -12,6 +12,7 @@ from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
+from grashof.synth.starts.functions.places import PlaceLimits
 from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.optima import STEPS, Aim, Ends, refined, with_extremes
@@ -61,12 +62,18 @@ class Optima:
             kinds = [self._near(self.desired, rng)]
             if full:
                 cranks = crank_starts(aims.kind, self.desired, rng, CRANKS, self.first, limits.shortest)
+                cranks = self._placed(cranks)
                 kinds.append(cranks[limits.of(cranks).value.min(axis=1) > -0.1])
             for starts in kinds:
-                for pull in PULLS if full else PULLS[:1]:
+                for pull in self._pulls(full):
                     batch, _ = fitted(few, starts, limits.of, pull=pull, held=held, steps=ROUGH_STEPS)
                     found.append((batch, pull))
         return found
+
+    def _pulls(self, full: bool) -> tuple[float, ...]:
+        if self.limits.places is not None:
+            return (0.1, 1.0, 10.0)
+        return PULLS if full else PULLS[:1]
 
     def starts(self, rough: Iterable[tuple[Generators, float]]) -> Generators:
         """Least squares from many starts, as `rough` gives them, best first; limits pull."""
@@ -76,8 +83,11 @@ class Optima:
                 desired, begun, self.limits.of, pull=pull, held=held, taken=ROUGH_STEPS - 1
             )
             found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
-        batch = self.aims.kind.joined(found)
+        batch = self.aims.made.joined(found)
         square = desired.square(desired.errors(batch))
+        if self.limits.places is not None:
+            missed = np.maximum(-self.limits.of(batch).value.min(axis=1), 0.0)
+            square = np.sqrt(square / desired.weights.sum()) + missed
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
 
     @property
@@ -94,7 +104,12 @@ class Optima:
         """Generators near the desired output."""
         if self.aims.triangle is not None:
             return driven_starts(self.aims, desired, rng, 1.0)
-        return function_starts(self.aims.kind, desired, rng, self.first)
+        return self._placed(function_starts(self.aims.kind, desired, rng, self.first))
+
+    def _placed(self, starts: Generators) -> Generators:
+        """Starts in places that suit their limits."""
+        places = self.limits.places
+        return places.placed(starts.finite) if isinstance(places, PlaceLimits) else starts
 
     def aim(self) -> Aim:
         """The error to be made least."""
@@ -106,7 +121,8 @@ class Optima:
     @property
     def apart(self) -> tuple[int, int]:
         """Equal for searches whose limits differ in their transmission angle alone."""
-        by_driver, by_sense = self.limits.offset is not None, self.limits.rates is not None
+        by_driver = self.limits.offset is not None or self.aims.directed
+        by_sense = self.limits.rates is not None
         return by_driver * self.driver, by_sense * self.sense
 
     def quick_pass(self) -> Generators:
