@@ -36,7 +36,8 @@ class TargetLimits:
     Parameters
     ----------
     targets : sequence of int
-        Numbers of the targets, counted from 1.
+        Numbers of the poses, points or pairs of a function, counted from 1. Of a law over its range they are
+        the 41 Chebyshev-Lobatto points.
     a, b : Box or Region, optional
         Where this moving pivot may be there.
     instant_centre : Box, optional

@@ -157,6 +157,11 @@ class FunctionAims:
         return limits if isinstance(limits, PlaceLimits) else None
 
     @property
+    def anywhere(self) -> FunctionAims:
+        """The same without these limits."""
+        return replace(self, limits=replace(self.limits, places=None))
+
+    @property
     def directed(self) -> bool:
         """Whether limits depend on the directions of links, so that mirror images differ."""
         return self.places is not None and self.places.directed

@@ -17,7 +17,7 @@ from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.optima import STEPS, Aim, Ends, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
-from grashof.synth.theory.functions.starts import crank_starts, function_starts
+from grashof.synth.theory.functions.starts import anywhere, crank_starts, function_starts
 from grashof.synth.theory.stopping import stop_requested
 
 CRANKS = 8000  # random full cranks, from which least squares begins besides
@@ -104,7 +104,10 @@ class Optima:
         """Generators near the desired output."""
         if self.aims.triangle is not None:
             return driven_starts(self.aims, desired, rng, 1.0)
-        return self._placed(function_starts(self.aims.kind, desired, rng, self.first))
+        near = function_starts(self.aims.kind, desired, rng, self.first)
+        if self.limits.places is not None and self.first is None:  # the best may be far from the best without
+            near = near.joined([near, anywhere(self.aims.kind, desired, rng)])
+        return self._placed(near)
 
     def _placed(self, starts: Generators) -> Generators:
         """Starts in places that suit their limits."""

@@ -91,7 +91,7 @@ class PlaceLimits:
             free,
             (),
             wanted.offset if free[2] else None,
-            tuple(parts),
+            tuple((part, limits) for part, limits in parts if limits != (-np.inf, np.inf)),
             at,
             () if single is None else tuple(AtTarget(single, name, 0) for name in along),
         )
@@ -192,7 +192,8 @@ class PlaceLimits:
                 found += self._sides(value, limits)
             if self.at:
                 design = view.at_targets(number, len(self.inputs))
-                found += [row for each in self.at for row in self._of_target(each, design)]
+                for each in self.at:
+                    found += self._of_target(each, design, self._sense(each, batch))
         for each in self.along:
             found += self._over_motion(each, batch)
         found += self._of_scale(batch)
@@ -226,13 +227,32 @@ class PlaceLimits:
         found += [(high - inside) - value] * bool(np.isfinite(high))
         return [row / self.unit for row in found]
 
-    def _of_target(self, limit: AtTarget, design: Design) -> Iterator[Dual]:
+    def _sense(self, limit: AtTarget, batch: Generators) -> FloatArray | None:
+        """On which side of the line of driver and coupler the motion to a toggle begins, (M, 1)."""
+        if limit.name != "past_deg":
+            return None
+        end = float(self.inputs[limit.k])
+        between = np.linspace(float(self.inputs[0 if limit.k else -1]), end, ALONG)
+        a, b = (Vector(each.x.value, each.y.value) for each in batch.joints(between))
+        turned = np.unwrap(self.driver * a.angle_to(b - a), axis=1)
+        line = np.pi * np.round(turned[:, -1:] / np.pi)
+        return np.sign(turned[:, :1] - line)
+
+    def _of_target(
+        self, limit: AtTarget, design: Design, sense: FloatArray | None = None
+    ) -> Iterator[Dual]:
         if limit.name in LENGTHS:
             for value, limits in limit.numbers(design):
                 yield from self._sides(value, limits)
             return
         steep = _steep(limit.limits, limit.name)
-        yield from (-steep * row for row in limit(design))
+        if sense is not None:
+            rows = [limit.past_from(design, sense)]
+        elif limit.name == "mechanical_advantage_min":
+            rows = [limit.advantage_share(design)]
+        else:
+            rows = limit(design)
+        yield from (-steep * row for row in rows)
 
     def _over_motion(self, limit: AtTarget, batch: Generators) -> Iterator[Dual]:
         """A limit at inputs of the range, and where it is kept by least in between."""
