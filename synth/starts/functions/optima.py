@@ -23,7 +23,9 @@ from grashof.synth.theory.stopping import stop_requested
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 ROUGH, ROUGH_STEPS = 13, 7  # samples of the range for the first steps of least squares, and their number
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
+STRONG = (0.1, 1.0, 10.0)  # the same where places are limited
 BASINS, TRIED, SHORT = 12, 30, 5  # starts that are refined, and those tried in few steps
+LONG = 180  # steps where places are limited, whose valleys are narrow
 EARLY = 12  # steps after which those that have become alike are refined no further
 # Of a quick pass: starts tried, the stride of those fitted, and their steps.
 FIRST, SPARSE, QUICK_STEPS = 3, 16, 12
@@ -72,7 +74,7 @@ class Optima:
 
     def _pulls(self, full: bool) -> tuple[float, ...]:
         if self.limits.places is not None:
-            return (0.1, 1.0, 10.0)
+            return STRONG
         return PULLS if full else PULLS[:1]
 
     def starts(self, rough: Iterable[tuple[Generators, float]]) -> Generators:
@@ -177,7 +179,8 @@ def optima(
         batch = _Batch.of(some)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, SHORT), _hopeful)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, EARLY), _distinct)
-        batch, ends = batch.chosen(refined(batch.aim, batch.generators), _best if few else _distinct)
+        steps = STEPS if batch.aim.limits.places is None else LONG
+        batch, ends = batch.chosen(refined(batch.aim, batch.generators, steps), _best if few else _distinct)
         if batch.aim.greatest:
             ends = batch.with_extremes()
         batch, ends = batch.chosen(ends, lambda some: _apart(some, some.error, some.missed <= missed))
