@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from grashof.analysis.judge.at_targets import start_limits
 from grashof.analysis.judge.meeting.function_start import (
     Beginning,
     begins,
@@ -18,7 +19,6 @@ from grashof.analysis.judge.meeting.function_start import (
 )
 from grashof.analysis.judge.meeting.inputs import ByAngle, ByLength, input_of
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
-from grashof.analysis.judge.start_limits import start_limits
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks

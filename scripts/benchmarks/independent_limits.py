@@ -235,7 +235,9 @@ def at_target(at: Places, aim: Aim, single: TargetLimits, k: int) -> list[FloatA
         rows.append(np.abs(off) - (high - low) / 2 + INSIDE)
     if single.coupler_rate is not None:
         rate = -cross(driver, output) / (cross(coupler, output) + HAIR)
-        rows += [side * (rate - limit) + INSIDE for side, limit in zip((-1, 1), single.coupler_rate, strict=True)]
+        rows += [
+            side * (rate - limit) + INSIDE for side, limit in zip((-1, 1), single.coupler_rate, strict=True)
+        ]
     if single.transmission_min_deg is not None:
         least = np.radians(single.transmission_min_deg) + INSIDE
         mu = np.abs(np.angle(coupler / output))

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, Design
+from grashof.analysis.judge.design import Design
 from grashof.problems import Box, Problem, Region
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.requirements.distances import ends_of
@@ -134,7 +134,7 @@ _EXCESS: dict[str, Any] = {
 }
 
 
-def target_constraints(problem: Problem) -> tuple[Constraint, ...]:
+def target_constraints(problem: Problem) -> tuple[AtTarget, ...]:
     """Those of all limits of a problem at single targets."""
     return tuple(
         AtTarget(limits, name, number - 1)

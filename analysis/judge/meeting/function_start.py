@@ -86,8 +86,8 @@ def begins(
     """Where the driver begins so that a single linkage errs least; None where it covers no such range.
 
     The errors at the pairs count if `exact`; unless the start is given, from there on the transmission angle
-    is at least `transmission` (rad), and `misses`, of starts (S,) in a sense, are zero. ProblemError for a linkage whose output does not move as the task's
-    does.
+    is at least `transmission` (rad), and `misses`, of starts (S,) in a sense, are zero. ProblemError for a
+    linkage whose output does not move as the task's does.
     """
     if refused := task.impossible(linkage.mechanism.word):
         raise ProblemError(refused)

@@ -214,7 +214,10 @@ class PlaceLimits:
         columns = range(*batch.PLACE.indices(batch.UNKNOWNS))
         every = np.eye(batch.UNKNOWNS)[:, None]
         each = [
-            Dual(batch.shape[:, [column]], np.broadcast_to(free * every[column], (len(batch), 1, batch.UNKNOWNS)))
+            Dual(
+                batch.shape[:, [column]],
+                np.broadcast_to(free * every[column], (len(batch), 1, batch.UNKNOWNS)),
+            )
             for column, free in zip(columns, self.free, strict=True)
         ]
         return tuple(each)
@@ -236,11 +239,9 @@ class PlaceLimits:
         a, b = (Vector(each.x.value, each.y.value) for each in batch.joints(between))
         turned = np.unwrap(self.driver * a.angle_to(b - a), axis=1)
         line = np.pi * np.round(turned[:, -1:] / np.pi)
-        return np.sign(turned[:, :1] - line)
+        return np.asarray(np.sign(turned[:, :1] - line))
 
-    def _of_target(
-        self, limit: AtTarget, design: Design, sense: FloatArray | None = None
-    ) -> Iterator[Dual]:
+    def _of_target(self, limit: AtTarget, design: Design, sense: FloatArray | None = None) -> Iterator[Dual]:
         if limit.name in LENGTHS:
             for value, limits in limit.numbers(design):
                 yield from self._sides(value, limits)
@@ -313,7 +314,10 @@ class _InPlace(View):
     def at_targets(self, columns: Mapping[int, int], count: int) -> Design:
         """As limits at single targets see it, given the column of every target that counts."""
         a, b = (
-            [(at.x.column(columns[k]), at.y.column(columns[k])) if k in columns else None for k in range(count)]
+            [
+                (at.x.column(columns[k]), at.y.column(columns[k])) if k in columns else None
+                for k in range(count)
+            ]
             for at in (self.a, self.b)
         )
         return self._design(a, b)
@@ -362,7 +366,10 @@ def _wide(limits: Limits) -> bool:
 
 def _inside(box: Box | None, x: float, y: float) -> Box:
     """A place of a pivot, moved into its box by what rounding left outside."""
-    x, y = (float(np.clip(at, *side)) for at, side in zip((x, y), ((box or ANYWHERE).x, (box or ANYWHERE).y), strict=True))
+    x, y = (
+        float(np.clip(at, *side))
+        for at, side in zip((x, y), ((box or ANYWHERE).x, (box or ANYWHERE).y), strict=True)
+    )
     return Box(x=(x, x), y=(y, y))
 
 

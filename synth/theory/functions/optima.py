@@ -161,7 +161,8 @@ class _Linear:
     @property
     def finite(self) -> BoolArray:
         """Whether output and limits have rates everywhere, (M,): in a dead position there are none."""
-        return np.isfinite(self.slopes).all(axis=(1, 2)) & np.isfinite(self.by_shape).all(axis=(1, 2))
+        known = np.isfinite(self.slopes).all(axis=(1, 2)) & np.isfinite(self.by_shape).all(axis=(1, 2))
+        return np.asarray(known)
 
     def step(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The best steps within radii (M,), shape (M, K), and the scores predicted for them."""

@@ -51,7 +51,7 @@ class Placed(Generators):
         return cls.anywhere.sizes_of([*shape[: cls.PLACE.start], shape[-1]])
 
     def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
-        *links, first = super().moves(crank, loop)
+        *links, first = self.anywhere.moves(self, crank, loop)
         return [*links, *NUMBERS * [Vector(0.0, 0.0)], first]
 
 

@@ -213,7 +213,11 @@ def test_rows_agree_with_the_judge_on_what_is_missed(which: str) -> None:
     assert isinstance(places, PlaceLimits)
     for k in range(len(batch)):
         made: Linkage = aims.linkage(batch[k : k + 1], search.driver)
-        theta2 = aims.kind.direction(search.aims.wanted) if not batch.PLACE.stop else batch.shape[k, batch.PLACE][3]
+        theta2 = (
+            aims.kind.direction(search.aims.wanted)
+            if not batch.PLACE.stop
+            else batch.shape[k, batch.PLACE][3]
+        )
         start = theta2 + search.driver * (batch.first[k] + 0.0)
         verdict = verify(made, task, replace(wanted, theta2_start_deg=float(np.degrees(start)) % 360))
         misses = {each.requirement for each in verdict.defects} & {"at", "a", "coupler_angle_deg", "o2"}
