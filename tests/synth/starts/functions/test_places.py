@@ -187,6 +187,7 @@ def started(which: str) -> tuple[FunctionAims, Optima, Any]:
     return aims, search, batch[np.isfinite(value).all(axis=1)][:60]
 
 
+@pytest.mark.quick("output")
 @pytest.mark.parametrize("which", CASES)
 def test_rows_have_the_derivatives_of_differences(which: str) -> None:
     _, search, batch = started(which)
@@ -205,6 +206,7 @@ def test_rows_have_the_derivatives_of_differences(which: str) -> None:
         assert np.nanquantile(off, 0.95) < 1e-4
 
 
+@pytest.mark.quick("output")
 @pytest.mark.parametrize("which", CASES)
 def test_rows_agree_with_the_judge_on_what_is_missed(which: str) -> None:
     aims, search, batch = started(which)
