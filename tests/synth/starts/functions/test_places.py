@@ -25,6 +25,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.optima import Optima
 from grashof.synth.starts.functions.places import PlaceLimits
+from grashof.synth.theory.functions.starts import function_starts
 
 PAIRS = [0, 20, 45, 70, 90, 110], [0, 15, 30, 40, 46, 50]
 FREE = Requirements(exact=False, rotatability="any", transmission_min_deg=10)
@@ -182,8 +183,11 @@ def started(which: str) -> tuple[FunctionAims, Optima, Any]:
     task, kind = CASES[which]
     aims = FunctionAims.of(ScaledProblem.of(problem(task, kind, **stated_of(kind))))
     search = Optima.each(aims)[-1]
-    batch = search._near(search.desired, np.random.default_rng(0))[::9]
-    value = search.limits.places.rows(batch).value  # type: ignore[union-attr]
+    places = search.limits.places
+    assert isinstance(places, PlaceLimits)
+    near = function_starts(aims.kind, search.desired, np.random.default_rng(0))
+    batch = places.placed(near[np.linspace(0, len(near) - 1, 150).astype(int)].finite)
+    value = places.rows(batch).value
     return aims, search, batch[np.isfinite(value).all(axis=1)][:60]
 
 
