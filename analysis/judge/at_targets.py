@@ -1,26 +1,34 @@
-"""Limits that hold at single targets, as the judge measures them there."""
+"""Limits that hold at single targets, and those of a function that depend on where its driver begins."""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from grashof.analysis.four_bar.instant_centres import instant_centres
-from grashof.analysis.judge.missed_limits import lifted
+from grashof.analysis.judge.meeting.function_start import Misses
+from grashof.analysis.judge.meeting.inputs import Input
 from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
-from grashof.problems import Linkage, Region, Requirements, Task
-from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems import DeadPositionWarning, Linkage, Region, Requirements, Task
+from grashof.problems.values.arrays import FloatArray, IntArray, Limits, turned_from
 from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.units import Unit
 
 SLACK = 1e-9  # sizes, rad or ratio
 SAMPLES = 181  # of the motion from an end target
+MOTION = 97  # inputs of the range, at which what is limited over the motion is compared
+_AT_PAIRS = ("a", "b", "distances")
+_OVER_MOTION = ("coupler_angle_deg", "coupler_rate", "mechanical_advantage_min")
+
+Figure: TypeAlias = tuple[str, FloatArray, Limits, Unit]  # name, values, their limits and unit
 
 
 def missed_at_targets(
@@ -29,75 +37,141 @@ def missed_at_targets(
     """A defect for every missed limit at a single target."""
     if not np.isfinite(verdict.theta2).all():
         return
-    state = solve_position(linkage, verdict.theta2, verdict.assembly)
     for limits in wanted.at:
-        for number in limits.targets:
-            figures = _figures(linkage, verdict, state, limits, number - 1, task.size)
-            for what, found, allowed, unit in figures:
-                miss = max(allowed[0] - found, found - allowed[1]) / task.size**unit.lengths
+        figures = list(figures_at(linkage, limits, verdict.theta2, verdict.assembly, task.size))
+        for row, number in enumerate(limits.targets):
+            for what, values, allowed, unit in figures:
+                found = float(values[row])
+                miss = float(excess(values[row], allowed)) / task.size**unit.lengths
                 if not miss <= SLACK:
                     shown = unit.shown * found
                     yield Defect("at", f"{what} at target {number}", shown, unit.range_text(allowed), miss)
 
 
-def _figures(
-    linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int, size: float
-) -> Iterator[tuple[str, float, Limits, Unit]]:
-    """Name, value, limits and unit of each limited quantity at a target."""
+def excess(values: FloatArray, allowed: Limits) -> FloatArray:
+    """Excess of values over their limits; negative inside."""
+    found: FloatArray = np.maximum(allowed[0] - values, values - allowed[1])
+    return found
+
+
+def figures_at(
+    linkage: Linkage, limits: TargetLimits, theta2: FloatArray, assembly: IntArray, size: float
+) -> Iterator[Figure]:
+    """Each limited quantity at the targets of limits (..., T), of one linkage at driver angles (..., N).
+
+    Assemblies (N,); the size is that of the task.
+    """
+    ks = np.array(limits.targets) - 1
+    at, own = theta2[..., ks], np.asarray(assembly)[ks]
+    state = solve_position(linkage, at, own)
+    yield from _of_places(linkage, limits, state, at, own, size)
+    if limits.past_deg is not None:
+        low, high = np.radians(limits.past_deg).tolist()
+        past = np.stack([past_toggle(linkage, theta2, assembly, k) for k in ks.tolist()], axis=-1)
+        yield "driver and coupler past toggle in deg", past, (low, high), Unit.ANGLE
+    if limits.coupler_angle_deg is not None:
+        low, high = np.radians(limits.coupler_angle_deg).tolist()
+        middle = (low + high) / 2
+        theta3 = middle + turned_from(state.theta3, middle)
+        yield "the direction of the coupler in deg", theta3, (low, high), Unit.ANGLE
+    if limits.coupler_rate is not None:
+        yield "the rate of the coupler", _moving(linkage, at, own).omega3, limits.coupler_rate, Unit.RATIO
+    if limits.transmission_min_deg is not None:
+        mu = transmission_angle(linkage, at)
+        least = float(np.radians(limits.transmission_min_deg))
+        yield "the transmission angle in deg", np.minimum(mu, np.pi - mu), (least, np.inf), Unit.ANGLE
+    if limits.mechanical_advantage_min is not None:
+        with np.errstate(divide="ignore"):
+            advantage = 1.0 / np.abs(_moving(linkage, at, own).omega4)
+        yield "the mechanical advantage", advantage, (limits.mechanical_advantage_min, np.inf), Unit.RATIO
+
+
+def _of_places(
+    linkage: Linkage, limits: TargetLimits, state: Position, at: FloatArray, own: IntArray, size: float
+) -> Iterator[Figure]:
+    """Places and distances at the targets, as `figures_at`."""
     for name in ("a", "b", "instant_centre"):
         box = getattr(limits, name)
         if box is None:
             continue
-        if name == "instant_centre":
-            place = instant_centres(linkage, verdict.theta2[k], verdict.assembly[k]).i13
-        else:
-            place = getattr(state, name)[k]
+        centre = name == "instant_centre"
+        places = instant_centres(linkage, at, own).i13 if centre else getattr(state, name)
         if isinstance(box, Region):
-            words, most = "the instant centre" if len(name) > 1 else name.upper(), slack_of(box) * size
-            away = float(distances(box, *place[:, None])[0])
+            words, most = "the instant centre" if centre else name.upper(), slack_of(box) * size
+            away = distances(box, places[..., 0], places[..., 1])
             yield f"the distance of {words} from its region", away, (-np.inf, most), Unit.LENGTH
             continue
-        for axis, side, value in zip("xy", (box.x, box.y), place.tolist(), strict=True):
-            yield f"{name}.{axis}", value, side, Unit.LENGTH
+        for axis, side, values in zip("xy", (box.x, box.y), np.moveaxis(places, -1, 0), strict=True):
+            yield f"{name}.{axis}", values, side, Unit.LENGTH
     for name, allowed in limits.named.get("distances", {}).items():
         one, other = (getattr(linkage if end in ("o2", "o4") else state, end) for end in ends_of(name))
-        away = (one if one.ndim == 1 else one[k]) - (other if other.ndim == 1 else other[k])
-        yield f"the distance {name}", float(np.hypot(*away)), allowed, Unit.LENGTH
-    if limits.past_deg is not None:
-        low, high = np.radians(limits.past_deg).tolist()
-        past = past_toggle(linkage, verdict, k)
-        yield "driver and coupler past toggle in deg", past, (low, high), Unit.ANGLE
-    if limits.coupler_angle_deg is not None:
-        low, high = np.radians(limits.coupler_angle_deg).tolist()
-        (theta3,) = lifted(state.theta3[[k]], (low, high)).tolist()
-        yield "the direction of the coupler in deg", theta3, (low, high), Unit.ANGLE
-    if limits.coupler_rate is not None:
-        moving = _moving(linkage, verdict, k)
-        yield "the rate of the coupler", float(moving.omega3), limits.coupler_rate, Unit.RATIO
-    if limits.transmission_min_deg is not None:
-        mu = float(transmission_angle(linkage, verdict.theta2[k]))
-        least = float(np.radians(limits.transmission_min_deg))
-        yield "the transmission angle in deg", min(mu, float(np.pi) - mu), (least, np.inf), Unit.ANGLE
-    if limits.mechanical_advantage_min is not None:
-        moving = _moving(linkage, verdict, k)
-        with np.errstate(divide="ignore"):
-            advantage = float(1.0 / np.abs(moving.omega4))
-        yield "the mechanical advantage", advantage, (limits.mechanical_advantage_min, np.inf), Unit.RATIO
+        away = np.broadcast_to(np.hypot(*np.moveaxis(one - other, -1, 0)), at.shape)
+        yield f"the distance {name}", away, allowed, Unit.LENGTH
 
 
-def _moving(linkage: Linkage, verdict: Verdict, k: int) -> Kinematics:
-    """The linkage at target k, its driver at 1 rad/s."""
-    return solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
+def _moving(linkage: Linkage, theta2: FloatArray, assembly: IntArray) -> Kinematics:
+    """The linkage at driver angles, its driver at 1 rad/s."""
+    with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
+        return solve_kinematics(linkage, theta2, 1.0, 0.0, assembly=assembly)
 
 
-def past_toggle(linkage: Linkage, verdict: Verdict, k: int) -> float:
-    """Angle of driver and coupler past toggle (O2, A and B in line) at target k, rad.
+def past_toggle(linkage: Linkage, theta2: FloatArray, assembly: IntArray, k: int) -> FloatArray:
+    """Angle of driver and coupler past toggle (O2, A and B in line) at target k (...), rad.
 
-    Positive where the motion from the first target (for the first target, back from the last) passes it.
+    Driver angles at the targets are (..., N), assemblies (N,). Positive where the motion from the first
+    target (for the first target, back from the last) passes it.
     """
-    start, end = verdict.theta2[[0 if k else -1, k]].tolist()
-    theta2 = np.linspace(start, end, SAMPLES)
-    turned: FloatArray = solve_position(linkage, theta2, verdict.assembly[k]).theta3 - theta2
-    turned = np.unwrap(turned)
-    line = np.pi * np.round(turned[-1] / np.pi)
-    return float(-np.sign(turned[0] - line) * (turned[-1] - line))
+    start, end = theta2[..., 0 if k else -1], theta2[..., k]
+    between = np.linspace(start, end, SAMPLES, axis=-1)
+    turned: FloatArray = solve_position(linkage, between, assembly[k]).theta3 - between
+    turned = np.unwrap(turned, axis=-1)
+    first, last = turned[..., 0], turned[..., -1]
+    line = np.pi * np.round(last / np.pi)
+    found: FloatArray = -np.sign(first - line) * (last - line)
+    return found
+
+
+def start_limits(linkage: Linkage, task: Task, wanted: Requirements, by: Input) -> Misses | None:
+    """Excess over these limits (S,) by starts (S,) and a sense, in sizes, rad or ratios; None without any.
+
+    Zero where they are kept; infinite where the linkage does not close.
+    """
+    at_pairs = _some(wanted, _AT_PAIRS, len(task))
+    over_motion = _some(wanted, _OVER_MOTION, MOTION)
+    if not (wanted.at or at_pairs or over_motion):
+        return None
+    inputs = np.linspace(*task.span, MOTION)
+
+    def misses(starts: FloatArray, direction: int) -> FloatArray:
+        worst = np.zeros(len(starts))
+        for limits, places in (
+            *((limits, task.inputs) for limits in (*wanted.at, *at_pairs)),
+            *((limits, inputs) for limits in over_motion),
+        ):
+            theta2 = starts[:, None] + direction * by.turned(starts, direction, places)
+            own = np.full(len(places), int(linkage.assembly))
+            for _, values, allowed, unit in figures_at(linkage, limits, theta2, own, task.size):
+                over = excess(values, allowed) / task.size**unit.lengths
+                greatest = _crest(over) if limits in over_motion else over.max(axis=-1)
+                worst = np.maximum(worst, np.nan_to_num(greatest, nan=np.inf))
+        return np.where(worst > SLACK, worst, 0.0)
+
+    return misses
+
+
+def _some(wanted: Requirements, names: tuple[str, ...], count: int) -> tuple[TargetLimits, ...]:
+    """Limits of requirements as limits at all of some targets."""
+    stated: dict[str, Any] = {name: getattr(wanted, name) for name in names if name in wanted.limited}
+    return (TargetLimits(targets=range(1, count + 1), **stated),) if stated else ()
+
+
+def _crest(values: FloatArray) -> FloatArray:
+    """The greatest of even samples (..., K), or of the parabola through it and its neighbours."""
+    before, here, after = values[..., :-2], values[..., 1:-1], values[..., 2:]
+    bend = 2 * here - before - after
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rise = np.where(
+            (here >= before) & (here >= after) & (bend > 0), (after - before) ** 2 / (8 * bend), 0.0
+        )
+    greatest: FloatArray = np.maximum(values.max(axis=-1), (here + rise).max(axis=-1))
+    return greatest

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from grashof.analysis.judge.at_targets import start_limits
 from grashof.analysis.judge.meeting.function_start import (
     Beginning,
     begins,
@@ -112,7 +113,10 @@ def met_as_function(
     if by is not None:
         if task.mirror is not None:
             begun = begins_mirrored(linkage, task, by, senses) or begins_mirrored(linkage, task, by, (1, -1))
-        begun = begun or begins(linkage, task, by, exact, start, senses, least)
+        misses = start_limits(linkage, task, wanted, by)
+        begun = begun or begins(linkage, task, by, exact, start, senses, least, misses)
+        if misses is not None:
+            begun = begun or begins(linkage, task, by, exact, start, senses, least)
         # A linkage that misses a requirement from every start is reported where its error is least.
         begun = begun or begins(linkage, task, by, exact, start, senses)
         begun = begun or begins(linkage, task, by, exact, start)

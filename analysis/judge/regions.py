@@ -29,7 +29,8 @@ def distances(region: Region, x: FloatArray, y: FloatArray) -> FloatArray:
     from grashof.problems.values.areas import shape
 
     places = shapely.points(np.asarray(x), np.asarray(y))
-    found = np.asarray(shapely.distance(shape(region.corners, is_line=region.on is not None), places))
+    with np.errstate(invalid="ignore"):
+        found = np.asarray(shapely.distance(shape(region.corners, is_line=region.on is not None), places))
     return np.where(np.isfinite(x) & np.isfinite(y), found, np.nan)
 
 

@@ -41,6 +41,8 @@ class Aim:
     closed: bool
     wanted: Requirements
     placed: bool  # the targets have positions
+    link: str  # whose angles the targets have: "coupler", with a body, or "output"
+    anywhere: bool  # the pivots are unknown; else O2 = 0 and O4 = 1
     turned: bool  # the targets have angles
     timed: bool  # the driver rotations are prescribed
     over_turn: bool  # the transmission angle counts over the full turn
@@ -56,13 +58,21 @@ class Aim:
         placed, size, angles = isinstance(task, (MotionTask, PathTask)), task.size, task.angles
         places = task.positions @ np.array([1, 1j]) if placed else np.zeros(len(task), dtype=complex)
         middle = complex(places.mean())
-        if isinstance(task, FunctionTask) and task.link == "coupler":
-            angles = task.outputs  # as a body that turns with the coupler, wherever it is
+        function = isinstance(task, FunctionTask)
+        if function:
+            angles = task.outputs  # as a body that turns with the link, wherever it is
         elif not placed or not (task.is_whole or task.only_points):
-            raise ValueError("poses with free parts and functions of link 4 are not supported here")
+            raise ValueError("poses with free parts are not supported here")
+        if task.lengthens or task.travels:
+            raise ValueError("functions of cylinders and slides are not supported here")
+        on_ground = Box(x=(0.0, 0.0), y=(0.0, 0.0)), Box(x=(1.0, 1.0), y=(0.0, 0.0))
+        directed = any(box not in (None, Box()) for box in (wanted.o2, wanted.o4, wanted.a, wanted.b))
+        directed |= any(each.a or each.b or each.coupler_angle_deg for each in wanted.at)
         return cls(
             size, middle, (places - middle) / size, angles, np.sqrt(task.weights),
             task.angle_length / size, task.driver_turns, task.closed, wanted, placed,
+            link=task.link if function else "coupler",
+            anywhere=placed or (directed and (wanted.o2, wanted.o4) != on_ground),
             turned=not np.isnan(angles).any(), timed=not np.isnan(task.driver_turns).any(),
             over_turn=task.closed or wanted.transmission_over == "cycle", potential=potential,
         )  # fmt: skip
@@ -103,6 +113,10 @@ class Places:
     b: ComplexArray
     p: ComplexArray
 
+    def of(self, link: str) -> ComplexArray:
+        """The joint from which a link leads to B."""
+        return self.a if link == "coupler" else self.o4
+
     @property
     def r1(self) -> FloatArray:
         """Length O2O4, shape (B, 1)."""
@@ -122,8 +136,10 @@ def places(aim: Aim, designs: Designs) -> Places:
     """All joints at all targets; where a loop does not close, links 3 and 4 are in line."""
     x = designs.x
     o2, o4, coupler = (x[:, k : k + 1] + 1j * x[:, k + 1 : k + 2] for k in (0, 2, 7))
+    if not aim.anywhere:
+        o2, o4 = 0 * o2, 0 * o4 + 1
     if not aim.placed:
-        o2, o4, coupler = 0 * o2, 0 * o4 + 1, 0 * coupler
+        coupler = 0 * coupler
     r2, r3, r4 = (np.exp(np.clip(x[:, k : k + 1], -20, 20)) for k in (4, 5, 6))
     theta2 = x[:, 10:]
     if aim.timed:
@@ -139,7 +155,8 @@ def misses(aim: Aim, designs: Designs, at: Places) -> FloatArray:
     gap = (at.p - aim.points) * aim.root_weights
     parts = [gap.real, gap.imag] if aim.placed else []
     if aim.turned:
-        turn = np.angle((at.b - at.a) * np.exp(1j * (at.body - aim.angles)))
+        side = 1.0 if aim.placed else designs.sense[:, None]  # outputs count in the sense of the driver
+        turn = np.angle((at.b - at.of(aim.link)) * np.exp(1j * (at.body - side * aim.angles)))
         parts.append(turn * aim.angle_length * aim.root_weights)
     if aim.potential is not None:
         untimed = replace(aim, timed=False)
@@ -166,9 +183,9 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
             rows.append(side * np.log(one / other / limit) + INSIDE * (limits[0] < limits[1]))
     for name, limits in wanted.ranges("distances").items():
         rows += beyond(apart(at, name), aim, limits)
-    for arm in (at.coupler, at.coupler - at.r3):
+    for arm in (at.coupler, at.coupler - at.r3) if aim.placed else ():
         rows += beyond(np.abs(arm), aim, wanted.coupler_arms or (0.0, np.inf))
-    for name in ("o2", "o4", "a", "b"):
+    for name in ("o2", "o4", "a", "b") if aim.anywhere else ("a", "b"):
         rows += astray(getattr(at, name), aim, getattr(wanted, name))
     for single in wanted.at:
         for number in single.targets:
@@ -216,6 +233,11 @@ def at_target(at: Places, aim: Aim, single: TargetLimits, k: int) -> list[FloatA
         low, high = np.radians(single.coupler_angle_deg).tolist()
         off = np.angle(coupler * np.exp(-0.5j * (low + high)))
         rows.append(np.abs(off) - (high - low) / 2 + INSIDE)
+    if single.coupler_rate is not None:
+        rate = -cross(driver, output) / (cross(coupler, output) + HAIR)
+        rows += [
+            side * (rate - limit) + INSIDE for side, limit in zip((-1, 1), single.coupler_rate, strict=True)
+        ]
     if single.transmission_min_deg is not None:
         least = np.radians(single.transmission_min_deg) + INSIDE
         mu = np.abs(np.angle(coupler / output))
@@ -294,17 +316,17 @@ def transmission(aim: Aim, at: Places) -> list[FloatArray]:
 def slopes(aim: Aim, at: Places) -> FloatArray:
     """Half the derivative of the squares by the driver angles on which limits depend; (B, 0) if none do.
 
-    The judge takes the driver angles that come nearest. Where the transmission angle at the ends or the
-    places of A and B are limited, a design may not gain by others.
+    The judge takes the driver angles that come nearest, of a function among those that keep its limits. Where
+    the transmission angle at the ends or the places of A and B are limited, a design may not gain by others.
     """
     boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box()) or bool(aim.wanted.at or aim.wanted.distances)
-    if aim.over_turn and not boxed and aim.potential is None:
+    if not aim.placed or (aim.over_turn and not boxed and aim.potential is None):
         return np.empty((len(at.p), 0))
     coupler, output, driver = at.b - at.a, at.b - at.o4, at.a - at.o2
     down = (coupler.conj() * output).imag
     rate3 = -(driver.conj() * output).imag / np.where(np.abs(down) < 1e-9, 1e-9, down)
     rate_p = 1j * (driver + (at.p - at.a) * rate3)
-    slope = aim.placed * aim.root_weights**2 * ((at.p - aim.points).conj() * rate_p).real
+    slope = aim.root_weights**2 * ((at.p - aim.points).conj() * rate_p).real
     if aim.turned:
         turn = np.angle(coupler * np.exp(1j * (at.body - aim.angles)))
         slope = slope + (aim.root_weights * aim.angle_length) ** 2 * turn * rate3

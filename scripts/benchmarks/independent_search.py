@@ -6,7 +6,7 @@ improves many random starts at once, with differences for derivatives. Sequentia
 (SLSQP of scipy) brings the best within their limits, and `grashof.analysis.judge.verify` judges them.
 
 It is a plain reference. It covers free and timed points met in order, poses with position and angle, and
-functions of the coupler, but neither areas kept out nor user constraints.
+functions by the driver's angle of links that turn, but neither areas kept out nor user constraints.
 """
 
 from dataclasses import dataclass, replace
@@ -70,7 +70,12 @@ def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
         x[:, 11:] += sense[:, None] * np.cumsum(steps[:, :-1], axis=1)
     if not aim.placed:
         x[:, 4:7] -= np.log(r1)[:, None]
-        sense[:] = 1.0  # mirror images turn alike
+        scale, turn = np.exp(0.5 * rng.normal(size=count)), rng.uniform(-np.pi, np.pi, count)
+        if aim.anywhere:
+            x[:, :2] = rng.normal(size=(count, 2))
+            x[:, 2:4] = x[:, :2] + scale[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+            x[:, 4:7] += np.log(scale)[:, None]
+        x[:, 10] += turn
     designs = Designs(x, elbow, sense)
     if aim.placed:
         at = places(aim, designs)
@@ -84,17 +89,18 @@ def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
         x[:, 10:] += np.angle(z)
     if aim.turned:
         at = places(aim, designs)
-        x[:, 9] = np.angle((np.exp(1j * aim.angles) * (at.b - at.a).conj()).sum(axis=1))
+        side = 1.0 if aim.placed else sense[:, None]
+        x[:, 9] = np.angle((np.exp(1j * side * aim.angles) * (at.b - at.of(aim.link)).conj()).sum(axis=1))
     return designs
 
 
-def penalised(aim: Aim, designs: Designs) -> Designs:
+def penalised(aim: Aim, designs: Designs, kept: int = POLISHED) -> Designs:
     """The best designs, each a basin of its own, with limits as penalties that grow from stage to stage."""
     starts = len(designs.x)
     for share, weight, steps in STAGES:
         designs, cost = improved(aim, designs, weight, steps)
-        designs = distinct(aim, designs, cost)[: max(POLISHED, round(share * starts))]
-    return designs[:POLISHED]
+        designs = distinct(aim, designs, cost)[: max(kept, round(share * starts))]
+    return designs[:kept]
 
 
 def distinct(aim: Aim, designs: Designs, cost: FloatArray) -> Designs:
@@ -166,13 +172,17 @@ class Best:
     error: float
 
 
-def search(problem: Problem, starts: int = STARTS, seed: int = 0, potential: Any = None) -> Best | None:
+def search(
+    problem: Problem, starts: int = STARTS, seed: int = 0, potential: Any = None, kept: int = POLISHED
+) -> Best | None:
     """The best design of a least-squares problem from random starts; None where the judge accepts none.
+
+    Of the starts the `kept` best are polished.
 
     ValueError: the problem has a requirement that this search does not know.
     """
     aim = Aim.of(problem, potential)
-    designs = penalised(aim, drawn(aim, starts, np.random.default_rng(seed)))
+    designs = penalised(aim, drawn(aim, starts, np.random.default_rng(seed)), kept)
     found = [polished(aim, designs[row : row + 1], steady=False) for row in range(len(designs.x))]
     if slopes(aim, places(aim, designs)).size:
         found += [polished(aim, design, steady=True) for design, _ in found]

@@ -191,6 +191,31 @@ def _heading(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, A
     return {"at": (TargetLimits(targets=[middle + 1], coupler_angle_deg=(low, low + 50)),)}
 
 
+def _rate(free: Candidate, _: float, rng: np.random.Generator) -> dict[str, Any]:
+    """A rate of the coupler at one target, away from that of the best design."""
+    (o2, a, b), o4 = _joints(free), free.linkage.o4 @ [1, 1j]
+    rates = -((a - o2).conj() * (b - o4)).imag / ((b - a).conj() * (b - o4)).imag
+    k = int(rng.integers(len(a)))
+    low = float(rates[k] + rng.uniform(0.1, 0.4))
+    return {"at": (TargetLimits(targets=[k + 1], coupler_rate=(low, low + 2)),)}
+
+
+def _near_ground(free: Candidate, size: float, rng: np.random.Generator) -> dict[str, Any]:
+    """Boxes for the pivots, and places of A at the first and B at the last target beside the best ones."""
+    (_, a, b), wide = _joints(free), rng.uniform(0.05, 0.2)
+    least = float(a[0].real) + rng.uniform(0.2, 0.5) * size
+    limits = (
+        TargetLimits(targets=[1], a=Box(x=(least, np.inf))),
+        TargetLimits(targets=[len(b)], b=_triangle(b[[-1]] + 0.3 * size * _direction(rng), size, rng)),
+    )
+    return {"at": limits, "o2": _square(0.0, wide), "o4": _square(1.0, wide)}
+
+
+def _square(x: float, half: float) -> Box:
+    """A square about a place on the x axis."""
+    return Box(x=(x - half, x + half), y=(-half, half))
+
+
 def _joints(free: Candidate) -> tuple[complex, ComplexArray, ComplexArray]:
     """O2, and A and B at every target."""
     at = solve_position(free.linkage, free.verdict.theta2, free.verdict.assembly)
@@ -230,7 +255,23 @@ LIMITS: dict[str, Callable[[Candidate, float, np.random.Generator], dict[str, An
     "transmission at a target": _transmission,
     "distances": _distance,
     "coupler at a target": _heading,
+    "rate at a target": _rate,
 }
+OF_FUNCTIONS = (
+    "toggle",
+    "advantage at a target",
+    "transmission at a target",
+    "place at a target",
+    "polygon at a target",
+    "polygon for A",
+    "instant centre",
+    "distances",
+    "coupler at a target",
+    "rate at a target",
+)
+OF_FEW_UNKNOWNS = {"starts": 400, "kept": 15}
+BOXES = "places, pivots in boxes"
+ON_GROUND = {"o2": _square(0.0, 0.0), "o4": _square(1.0, 0.0)}
 
 
 def beside_independent(name: str, count: int, seed: int) -> Iterator[str]:
@@ -254,6 +295,29 @@ def _free(number: int) -> Candidate:
     return min(found, key=lambda each: each.verdict.square)
 
 
+def functions(name: str, count: int, seed: int) -> Iterator[str]:
+    """Least errors of functions under a limit that binds, beside those of the independent search."""
+    ratios = list[float]()
+    for number in range(seed, seed + count):
+        free = _free_function(number)
+        rng = np.random.default_rng([13, number])
+        limits = _near_ground(free, 1.0, rng) if name == BOXES else ON_GROUND | LIMITS[name](free, 1.0, rng)
+        problem = replace(free.problem, requirements=replace(WANTED, **limits))
+        ratios.append((yield from _beside(problem, f"{name} {number}", number, **OF_FEW_UNKNOWNS)))
+    yield summary(ratios)
+
+
+@cache
+def _free_function(number: int) -> Candidate:
+    """The design of least error of a random function, without further limits."""
+    rng = np.random.default_rng([14, number])
+    task, _, _ = planted_function(rng, 8)
+    outputs = task.outputs + rng.normal(0, 0.02 * np.ptp(task.outputs), len(task))
+    noisy = FunctionTask(task.inputs, outputs - outputs[0])
+    found = synthesize(Problem(task=noisy, requirements=WANTED), seed=0).candidates
+    return min(found, key=lambda each: each.verdict.square)
+
+
 def couplers(count: int, seed: int) -> Iterator[str]:
     """Least errors of coupler angles as functions, beside those of the independent search."""
     ratios = list[float]()
@@ -267,9 +331,9 @@ def couplers(count: int, seed: int) -> Iterator[str]:
     yield summary(ratios)
 
 
-def _beside(problem: Problem, name: str, seed: int) -> Generator[str, None, float]:
+def _beside(problem: Problem, name: str, seed: int, **effort: int) -> Generator[str, None, float]:
     """A line on one problem; returns the ratio of both least errors."""
-    other, seconds = timed(partial(search, problem, seed=seed), process_time)
+    other, seconds = timed(partial(search, problem, seed=seed, **effort), process_time)
     error, took = searched(problem, seed=0)
     ratio = ratio_to(None if other is None else other.error, error, problem)
     yield f"{name}: ours/independent {ratio:.4f}; {took:.1f} s and {seconds:.1f} s"
@@ -280,6 +344,10 @@ CASES = [
     *(
         Case(f"beside an independent search: {name}", 10, partial(beside_independent, name))
         for name in LIMITS
+    ),
+    *(
+        Case(f"beside an independent search: functions: {name}", 10, partial(functions, name))
+        for name in (*OF_FUNCTIONS, BOXES)
     ),
     Case("beside an independent search: coupler angle", 10, couplers),
     Case("known tasks", 12, partial(against_known, KNOWN, 5)),

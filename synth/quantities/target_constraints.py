@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, Design
+from grashof.analysis.judge.design import Design
 from grashof.problems import Box, Problem, Region
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.requirements.distances import ends_of
@@ -19,7 +19,7 @@ from grashof.synth.quantities.regions import hull_rows
 
 INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
 ROUNDING = 1e-10  # share
-FLAT = 1e-4  # sine of a rotation between two targets below which its sense is not certain
+FLAT = 1e-4  # sine of an angle below which its sense is not certain
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,12 +67,18 @@ class AtTarget:
         return [over for value, limits in numbers for over in _beyond(value, *limits)]
 
     def past(self, design: Design) -> Any:
-        """cos(high - low) - cos(2 past - low - high), not positive inside the range: both lines count."""
+        """By the side of the line on which the motion from, or to, the other end begins."""
+        cos = _of_coupler(design, self.k)[0]
+        ahead = _of_coupler(design, 0 if self.k else -1)[1] * cos  # nearly the sine of the angle there
+        return self.past_from(design, ahead / (ahead**2 + FLAT**2) ** 0.5)
+
+    def past_from(self, design: Design, sense: Any) -> Any:
+        """cos(high - low) - cos(2 past - low - high), not positive inside the range: both lines count.
+
+        The sense is 1 where the other end lies left of the line, and -1 on its right.
+        """
         low, high = np.radians(self.limits.past_deg or (0.0, 0.0)).tolist()
         cos, sin = _of_coupler(design, self.k)
-        there = _of_coupler(design, 0 if self.k else -1)
-        ahead = there[1] * cos - there[0] * sin  # sine of the turn to the other target
-        sense = ahead / (ahead**2 + FLAT**2) ** 0.5
         cos_twice, sin_twice = cos**2 - sin**2, -2 * sense * sin * cos  # of twice the angle past toggle
         middle, width = low + high, high - low - INSIDE  # twice the middle of the range, and its width
         return float(np.cos(width)) - cos_twice * float(np.cos(middle)) - sin_twice * float(np.sin(middle))
@@ -102,10 +108,21 @@ class AtTarget:
 
     def advantage(self, design: Design) -> Any:
         """By the squares of the moment arms of link 3 about O2 and O4."""
+        output = _links(design, self.k)[2]
+        by_driver, by_output = self._arms(design)
+        return (by_driver - by_output) / _square(output)
+
+    def advantage_share(self, design: Design) -> Any:
+        """The same as a share, which counts alike for links of any length."""
+        by_driver, by_output = self._arms(design)
+        return (by_driver - by_output) / (by_driver + by_output)
+
+    def _arms(self, design: Design) -> tuple[Any, Any]:
+        """Squares of the moment arms of link 3 about O2, times the least advantage, and about O4."""
         driver, coupler, output = _links(design, self.k)
         least = float((self.limits.mechanical_advantage_min or 0.0) * (1 + INSIDE))
         by_driver, by_output = (_cross(link, coupler) ** 2 / _square(coupler) for link in (driver, output))
-        return (least**2 * by_driver - by_output) / _square(output)
+        return least**2 * by_driver, by_output
 
 
 _EXCESS: dict[str, Any] = {
@@ -117,7 +134,7 @@ _EXCESS: dict[str, Any] = {
 }
 
 
-def target_constraints(problem: Problem) -> tuple[Constraint, ...]:
+def target_constraints(problem: Problem) -> tuple[AtTarget, ...]:
     """Those of all limits of a problem at single targets."""
     return tuple(
         AtTarget(limits, name, number - 1)

@@ -36,7 +36,13 @@ def test_a_toggle_closes_past_its_position(task: Task, last: int) -> None:
     result = synthesize(Problem(task=task, requirements=wanted), seed=0, enough=5, starts=20)
     assert len(result) > 0
     for each in result.candidates:
-        assert 2 <= round(np.degrees(past_toggle(each.linkage, each.verdict, last - 1)), 6) <= 5
+        assert (
+            2
+            <= round(
+                np.degrees(past_toggle(each.linkage, each.verdict.theta2, each.verdict.assembly, last - 1)), 6
+            )
+            <= 5
+        )
 
 
 @pytest.mark.slow

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import Linkage, ProblemError, Task
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
+
+Misses: TypeAlias = Callable[[FloatArray, int], FloatArray]
 
 _STARTS = 720  # driver angles at the first pair that are tried, over the range of the driver
 _VALLEYS = 5
@@ -78,12 +81,13 @@ def begins(
     theta2_start: float | None,
     directions: tuple[int, ...] = (1, -1),
     transmission: float = 0.0,
+    misses: Misses | None = None,
 ) -> Beginning | None:
     """Where the driver begins so that a single linkage errs least; None where it covers no such range.
 
-    The errors at the pairs count if `exact`; from there on the transmission angle is at least `transmission`
-    (rad), unless the start is given. ProblemError for a linkage whose output does not move as the task's
-    does.
+    The errors at the pairs count if `exact`; unless the start is given, from there on the transmission angle
+    is at least `transmission` (rad), and `misses`, of starts (S,) in a sense, are zero. ProblemError for a
+    linkage whose output does not move as the task's does.
     """
     if refused := task.impossible(linkage.mechanism.word):
         raise ProblemError(refused)
@@ -94,8 +98,12 @@ def begins(
         )
     search = _Search(linkage, task, by, exact or task.norm == "rms", transmission)
     if theta2_start is None:
-        lowest = sorted(valley for direction in directions for valley in search.valleys(direction))
-        found = search.bottoms(lowest[:_VALLEYS])
+        found = search.lowest(directions)
+        if misses is not None and found:
+            _, direction, start = min(found)
+            if misses(np.array([start]), direction)[0] > 0:
+                kept = [one for one in found if not misses(np.array([one[2]]), one[1])[0] > 0]
+                found = kept + replace(search, misses=misses).lowest(directions)
     else:
         given = [(search.value(theta2_start, direction), direction, theta2_start) for direction in directions]
         found = sorted(one for one in given if np.isfinite(one[0]))[:1]
@@ -150,13 +158,19 @@ class _Search:
     by: Input
     squares: bool
     transmission: float
+    misses: Misses | None = None  # that have to be zero
+
+    def lowest(self, directions: Sequence[int]) -> list[tuple[float, int, float]]:
+        """Least errors with their senses and starts, of the lowest valleys."""
+        lowest = sorted(valley for direction in directions for valley in self.valleys(direction))
+        return self.bottoms(lowest[:_VALLEYS])
 
     @property
     def senses(self) -> tuple[int, ...]:
         return (1, -1) if self.task.sense == "either" else (1,)
 
     def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
-        """RMS or greatest error for first angles (S,); infinite below the least transmission angle."""
+        """RMS or greatest error for first angles (S,); infinite where a start is not allowed."""
         if not self.squares:
             return self._highest(self._crests(starts, direction, samples)[0], starts, direction)
         task, share = self.task, self.task.weights / self.task.weights.sum()
@@ -166,7 +180,7 @@ class _Search:
             off = _from_first(task, moved - sense * task.outputs)
             off = off - (off @ share)[:, None]
             best = np.fmin(best, np.nan_to_num(np.sqrt(off**2 @ share), nan=np.inf))
-        return self._transmitted(best, starts, direction)
+        return self._allowed(best, starts, direction)
 
     def _moved(
         self, starts: FloatArray, direction: int, inputs: FloatArray, *, unwrapped: bool
@@ -200,10 +214,12 @@ class _Search:
         """Greatest errors (S,) of the best sense, as `values`."""
         highest = crests.max(axis=-1)
         best = np.nan_to_num((highest[::2] + highest[1::2]) / 2, nan=np.inf).min(axis=0)
-        return self._transmitted(best, starts, direction)
+        return self._allowed(best, starts, direction)
 
-    def _transmitted(self, values: FloatArray, starts: FloatArray, direction: int) -> FloatArray:
-        """Values (S,), infinite below the least transmission angle."""
+    def _allowed(self, values: FloatArray, starts: FloatArray, direction: int) -> FloatArray:
+        """Values (S,), infinite below the least transmission angle, and where limits are missed."""
+        if self.misses is not None:
+            values = np.where(self.misses(starts, direction) > 0, np.inf, values)
         if not self.transmission > 0:
             return values
         ends = starts[:, None] + direction * self.by.turned(starts, direction, np.array(self.task.span))
@@ -222,7 +238,26 @@ class _Search:
             starts = np.linspace(low, high, max(8, int(np.ceil(_STARTS * (high - low) / TURN))) + 1)
             value = self.values(starts, direction, _SAMPLES)
             found += [(float(value[k]), direction, float(starts[k])) for k in valleys(value)]
+            found += self._narrow(starts, direction)
         return found
+
+    def _narrow(self, starts: FloatArray, direction: int) -> list[tuple[float, int, float]]:
+        """Starts between even ones where alone limits are kept, with their errors."""
+        if self.misses is None:
+            return []
+        missed = self.misses(starts, direction)
+        at, span = starts[[k for k in valleys(missed) if missed[k] > 0]], TURN / _STARTS
+        share = np.linspace(-1, 1, _NEAR)
+        while span > _CLOSE and at.size:
+            near = at[:, None] + span * share
+            lowest = self.misses(near.ravel(), direction).reshape(near.shape).argmin(axis=1)
+            at = np.take_along_axis(near, lowest[:, None], axis=1)[:, 0]
+            span *= 2 / (_NEAR - 1)
+        return [
+            (value, direction, start)
+            for value, start in zip(self.values(at, direction).tolist(), at.tolist(), strict=True)
+            if np.isfinite(value)
+        ]
 
     def _ranges(self, direction: int) -> list[tuple[float, float]]:
         """Driver angles at the first pair from which the range is possible."""

@@ -36,7 +36,8 @@ class TargetLimits:
     Parameters
     ----------
     targets : sequence of int
-        Numbers of the targets, counted from 1.
+        Numbers of the poses, points or pairs of a function, counted from 1. Of a law over its range they are
+        the 41 Chebyshev-Lobatto points.
     a, b : Box or Region, optional
         Where this moving pivot may be there.
     instant_centre : Box, optional
@@ -101,8 +102,8 @@ class TargetLimits:
 
     def wrong(self, task: Task, kinds: Sequence[str], where: str) -> list[str]:
         """Contradictions with a task and kinds of linkages, a line each."""
-        if not task.in_plane:
-            return [f"{where} does not go with a {task.kind}; it needs poses or points"]
+        if not (task.in_plane or task.has_output.any()):
+            return [f"{where} does not go with a {task.kind}; it needs poses, points or pairs of a function"]
         beyond = [number for number in self.targets if number > len(task)]
         wrong = [f"{where}.targets has {number}; the last target is {len(task)}" for number in beyond]
         for name in self.limited:

@@ -60,7 +60,7 @@ def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0)
         return None
     if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
         return None
-    aims = FunctionAims.of(scaled)
+    aims = FunctionAims.of(scaled).anywhere
     ways = list(aims.ways())
     since, stated = perf_counter(), problem.requirements.limited
     share = SHARE_OF_PLANE if len(aims.task) == THREE else SHARE_OF_CURVE
@@ -73,6 +73,7 @@ def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0)
     except StopRequested:
         why = "it was stopped"
     beyond = [name for name in stated if name not in _FORMS] + ["constraints"] * bool(scaled.constraints)
+    beyond += ["at"] * bool(problem.requirements.at)
     beyond += ["function.rate"] * (problem.task.rates is not None)
     return Bounds(
         lower=search.lower,

@@ -31,6 +31,8 @@ def certified_functions(scaled: ScaledProblem) -> Certified | None:
     if problem.driver is not None:  # not every linkage has a cylinder within its limits
         return None
     aims, since, found = FunctionAims.of(scaled), perf_counter(), []
+    if aims.made is not aims.kind:  # places are searched for, and not all are tried
+        return None
     for sense in dict.fromkeys(sense for sense, _, _ in aims.ways()):
         wanted = aims.pairs(sense)
         turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]

@@ -25,11 +25,13 @@ from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import DrivenLinkage
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.starts.functions.places import PlaceLimits
 from grashof.synth.starts.functions.placing import distances, placed_cylinder, triangle_of
 from grashof.synth.theory.functions.by_cylinder import BY_CYLINDER, ByCylinder
 from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
 from grashof.synth.theory.functions.output import Generators
+from grashof.synth.theory.functions.placed import PLACED
 from grashof.synth.theory.functions.triangle import TriangleLimits, opening_slopes, turned_by
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
@@ -65,7 +67,12 @@ class FunctionAims:
         kind, unit = scaled.kind.generators[task.link], task.output_unit
         if task.lengthens:
             kind, wanted = BY_CYLINDER[kind], _with_scale(problem.requirements, wanted, task.usual_ground)
-        names, sizes = kind.sizes(wanted, unit)
+        places = PlaceLimits.of(problem, scaled.kind, wanted, unit if task.travels else None)
+        anywhere = wanted
+        if places is not None:
+            wanted = places.settled(wanted)
+            anywhere = replace(wanted, o2=None, o4=None) if places.free.any() else wanted
+        names, sizes = kind.sizes(anywhere, unit)
         rotatability, offset = wanted.rotatability or Rotatability.ANY, wanted.offset
         lengths = [_over(each, unit) for each in sizes]
         limits = ShapeLimits(
@@ -78,6 +85,7 @@ class FunctionAims:
             offset=None if offset is None else offset_rows(lengths, _over(offset, unit)),
             stroke=(-np.inf, np.inf) if wanted.stroke is None else _over(wanted.stroke, unit),
             rates=_rates(task, wanted, unit),
+            places=None if places is None else places.with_sizes(sizes),
             triangle=_triangle(problem, wanted, unit if task.travels else None) if task.lengthens else None,
         )
         exact = problem.requirements.is_exact(task)
@@ -88,6 +96,8 @@ class FunctionAims:
         limits = self.limits
         if driver < 0 and limits.offset is not None:
             limits = replace(limits, offset=limits.offset * np.append(np.ones(len(self.sizes)), -1.0))
+        if driver < 0 and isinstance(limits.places, PlaceLimits):
+            limits = replace(limits, places=replace(limits.places, driver=driver))
         if sense < 0 and limits.rates is not None:
             limits = replace(limits, rates=limits.rates[:, [0, 2, 1]] * [1.0, -1.0, -1.0])
         return limits
@@ -122,7 +132,8 @@ class FunctionAims:
         """Senses of output and driver that are searched, and the driver angle at the beginning, if given."""
         wanted = self.problem.requirements
         start = wanted.theta2_start_deg
-        one = self.task.sense != "either" or (self.kind.ONE_SENSE and start is None)
+        same = self.kind.ONE_SENSE and start is None and not self.directed
+        one = self.task.sense != "either" or same
         drivers = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
         for sense in (1,) if one else (1, -1):
             if start is None:
@@ -136,7 +147,29 @@ class FunctionAims:
     @property
     def mirrored(self) -> bool:
         """Whether mirror images are equally suitable, so that one sense of the driver represents both."""
-        return self.wanted.offset is None and self.problem.requirements.theta2_start_deg is None
+        start = self.problem.requirements.theta2_start_deg
+        return self.wanted.offset is None and start is None and not self.directed
+
+    @property
+    def places(self) -> PlaceLimits | None:
+        """Limits of joints and links in their places, of drivers that turn counter-clockwise."""
+        limits = self.limits.places
+        return limits if isinstance(limits, PlaceLimits) else None
+
+    @property
+    def anywhere(self) -> FunctionAims:
+        """The same without these limits."""
+        return replace(self, limits=replace(self.limits, places=None))
+
+    @property
+    def directed(self) -> bool:
+        """Whether limits depend on the directions of links, so that mirror images differ."""
+        return self.places is not None and self.places.directed
+
+    @property
+    def made(self) -> type[Generators]:
+        """The kind, with places where these are searched for."""
+        return self.kind if self.places is None or not self.places.free.any() else PLACED[self.kind]
 
     def pairs(self, sense: int) -> DesiredOutput:
         """The pairs, from the beginning of the range."""
@@ -161,7 +194,8 @@ class FunctionAims:
 
     def linkage(self, batch: Generators, driver: int) -> Linkage:
         """The linkage of one generator, placed and scaled as limits have it."""
-        return batch.linkage(self.wanted, self.unit, driver)
+        wanted = self.wanted if self.places is None else self.places.standing(batch, self.wanted)
+        return batch.linkage(wanted, self.unit, driver)
 
     def design(self, batch: Generators, driver: int) -> Linkage | DrivenLinkage | None:
         """The linkage of one generator, with its cylinder; None where that has no base within its limits."""
@@ -181,7 +215,8 @@ class FunctionAims:
         linkage, verdict = design.linkage, design.verdict
         driver, theta2 = verdict.direction, float(verdict.theta2[0])
         if not issubclass(self.kind, ByCylinder):
-            return self.kind.of_linkage(linkage, self.unit, driver, theta2).begun(-self.task.span[0])
+            made = self.kind.of_linkage(linkage, self.unit, driver, theta2).begun(-self.task.span[0])
+            return made if self.places is None else self.places.of_linkage(made, linkage)
         logs = None if verdict.cylinder is None else triangle_of(verdict.cylinder, linkage, theta2)
         if logs is None:
             return None
@@ -201,7 +236,12 @@ class FunctionAims:
         caps = self.limits.caps.copy()
         if self.triangle is not None:
             caps[0, 1] = min(caps[0, 1], self.triangle.reach(triangle))
-        limits = replace(self.limits, caps=caps, span=by_angle.span[1], rates=rates, triangle=None)
+        places = self.places
+        if places is not None:
+            places = replace(places, inputs=turned_by(triangle, places.inputs))
+        limits = replace(
+            self.limits, caps=caps, span=by_angle.span[1], rates=rates, triangle=None, places=places
+        )
         return replace(self, task=by_angle, kind=kind.by_angle, limits=limits)
 
     @property

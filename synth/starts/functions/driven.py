@@ -6,32 +6,27 @@ the linkages are known; for more pairs, the best fits under some triangles are f
 
 from __future__ import annotations
 
-from contextlib import suppress
-from dataclasses import replace
-
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.met import ZOOMED, met, nearest, raised
 from grashof.synth.starts.functions.pairs import NEAR, Pairs, expected_score, through_pairs
 from grashof.synth.theory.functions.by_cylinder import ByCylinder
-from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
-from grashof.synth.theory.functions.limits import ShapeLimits
-from grashof.synth.theory.functions.optima import Aim, refined
+from grashof.synth.theory.functions.fit import DesiredOutput, best_apart
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import few_starts
 from grashof.synth.theory.functions.triangle import turned_by
-from grashof.synth.theory.stopping import StopRequested, stop_requested
+from grashof.synth.theory.stopping import stop_requested
 
 TRIANGLES = 240  # from which least squares begins
-ENDS, LONG = 12, 120  # of the best fits that are refined where pairs are met, and the steps of each
-HALVINGS, RAISED = 6, 3  # of the transmission angle where freedom is left, and fits that are refined
+ENDS = 12  # of the best fits that are refined where pairs are met
 EACH = 6  # starts that continue under each triangle
 APART = 0.3  # distance between them, as in `best_apart`
 # Triangles that are tried for pairs that are met, by their number, and the effort of each.
 TRIED = {3: (48, 0.02), 4: (36, 0.03), 5: (400, 1.0)}
 KEPT = 12  # of the most promising linkages under each triangle
-ZOOMED, ZOOMS = 8, 2  # best triangles around which others are tried, and number of such rounds
+ZOOMS = 2  # rounds in which triangles near the best ones are tried
 
 
 def through_by_cylinder(
@@ -40,40 +35,12 @@ def through_by_cylinder(
     """All that are found through the pairs and keep the limits."""
     kind, pairs = _kind(aims), Pairs.of(aims, sense, driver)
     if len(aims.task) <= kind.by_angle.EXACT:
-        pool = _by_triangles(aims, sense, driver, rng, effort)
+        pool = nearest(pairs, _by_triangles(aims.anywhere, sense, driver, rng, effort))
         if len(pool) or stop_requested():
             return pool
     starts = driven_starts(aims, pairs.desired, rng, effort)
-    found = _met(pairs, starts, pairs.limits, ENDS)
-    return found if len(aims.task) == kind.EXACT else _raised(pairs, found, effort)
-
-
-def _met(pairs: Pairs, starts: Generators, limits: ShapeLimits, most: int) -> Generators:
-    """Those that meet all pairs within limits: the best of many starts, refined where too few do."""
-    within = replace(pairs, limits=limits)
-    near, _ = fitted(pairs.desired, starts, limits.of)
-    found = within.kept(near)
-    if len(found) < most:
-        with suppress(StopRequested):
-            ends = refined(Aim(pairs.desired, limits), near[:most], LONG)
-            found = found.joined([found, ends.generators])
-    return within.kept(found)
-
-
-def _raised(pairs: Pairs, found: Generators, effort: float) -> Generators:
-    """Some designs, and others with ever greater transmission angles, by halving."""
-    span = pairs.limits.span
-    pool, low, high = found, -1.0, float(np.pi / 2)
-    for _ in range(round(HALVINGS * min(effort, 1.0))):
-        if not len(pool) or stop_requested():
-            break
-        worst = np.arccos(np.minimum(pool.worst_cosine(span), 1.0))
-        low, best = max(low, float(worst.max())), pool[np.argsort(-worst, kind="stable")[:ZOOMED]]
-        level = (low + high) / 2
-        more = _met(pairs, best, replace(pairs.limits, transmission=level), RAISED)
-        high = high if len(more) else level
-        pool = pool.joined([pool, more])
-    return pool
+    found = met(pairs, starts, pairs.limits, ENDS)
+    return found if len(aims.task) == kind.EXACT else raised(pairs, found, effort=effort)
 
 
 def _by_triangles(

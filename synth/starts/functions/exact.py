@@ -7,7 +7,8 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import through_by_cylinder
-from grashof.synth.starts.functions.pairs import NEAR, expected_score, through_pairs
+from grashof.synth.starts.functions.met import nearest
+from grashof.synth.starts.functions.pairs import NEAR, Pairs, expected_score, through_pairs
 from grashof.synth.theory.functions.by_cylinder import ByCylinder
 from grashof.synth.theory.functions.fit import best_apart
 from grashof.synth.theory.functions.output import Generators
@@ -23,18 +24,18 @@ def exact_functions(
     """
     found: list[tuple[FloatArray, Generators, int]] = []
     for sense, driver, first in aims.ways():
-        batch = (
-            through_pairs(aims, sense, driver, first, rng, effort)
-            if aims.triangle is None
-            else through_by_cylinder(aims, sense, driver, rng, effort)
-        )
+        if aims.triangle is None:
+            batch = through_pairs(aims.anywhere, sense, driver, first, rng, effort)
+            batch = nearest(Pairs.of(aims, sense, driver), batch, held=first is not None)
+        else:
+            batch = through_by_cylinder(aims, sense, driver, rng, effort)
         if len(batch) and not stop_requested():
             found.append((expected_score(aims, batch, sense), batch, driver))
     if not found:
         return []
     score = np.concatenate([each for each, _, _ in found])
     drivers = np.concatenate([np.full(len(batch), driver) for _, batch, driver in found])
-    batch = aims.kind.joined([each for _, each, _ in found])
+    batch = aims.made.joined([each for _, each, _ in found])
     # Those under triangles near the best one are many, and would crowd out the others.
     (linkages, room) = (batch.lengths_alone, 1) if isinstance(batch, ByCylinder) else (batch, 4)
     cell = NEAR

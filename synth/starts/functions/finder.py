@@ -152,7 +152,7 @@ class Functions(DesignFinder):
             mine[int(np.argmin(np.nan_to_num(fit, nan=np.inf)))].append(batch)
         for search, several in zip(every, mine, strict=True):
             if several:
-                yield search, self.aims.kind.joined(several)
+                yield search, self.aims.made.joined(several)
 
     @property
     def _in_order(self) -> bool:
@@ -176,7 +176,9 @@ class Functions(DesignFinder):
         if self.aims.obstacle or not self.aims.exact or counts.get(FINDS):
             return self.aims.obstacle
         pairs = f"through the {len(self.aims.task)} pairs on one branch under these requirements"
-        if self.aims.triangle is not None:  # some cylinders of many
+        if (
+            self.aims.triangle is not None or self.aims.places is not None
+        ):  # some cylinders, or places, of many
             return f"no {self.aims.kinds[:-1]} was found {pairs}"
         return f"no {self.aims.kinds[:-1]} goes {pairs}"
 

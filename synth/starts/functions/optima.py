@@ -12,17 +12,20 @@ from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
+from grashof.synth.starts.functions.places import PlaceLimits
 from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.optima import STEPS, Aim, Ends, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
-from grashof.synth.theory.functions.starts import crank_starts, function_starts
+from grashof.synth.theory.functions.starts import anywhere, crank_starts, function_starts
 from grashof.synth.theory.stopping import stop_requested
 
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 ROUGH, ROUGH_STEPS = 13, 7  # samples of the range for the first steps of least squares, and their number
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
+STRONG = (0.1, 1.0, 10.0)  # the same where places are limited
 BASINS, TRIED, SHORT = 12, 30, 5  # starts that are refined, and those tried in few steps
+LONG = 180  # steps where places are limited, whose valleys are narrow
 EARLY = 12  # steps after which those that have become alike are refined no further
 # Of a quick pass: starts tried, the stride of those fitted, and their steps.
 FIRST, SPARSE, QUICK_STEPS = 3, 16, 12
@@ -61,12 +64,18 @@ class Optima:
             kinds = [self._near(self.desired, rng)]
             if full:
                 cranks = crank_starts(aims.kind, self.desired, rng, CRANKS, self.first, limits.shortest)
+                cranks = self._placed(cranks)
                 kinds.append(cranks[limits.of(cranks).value.min(axis=1) > -0.1])
             for starts in kinds:
-                for pull in PULLS if full else PULLS[:1]:
+                for pull in self._pulls(full):
                     batch, _ = fitted(few, starts, limits.of, pull=pull, held=held, steps=ROUGH_STEPS)
                     found.append((batch, pull))
         return found
+
+    def _pulls(self, full: bool) -> tuple[float, ...]:
+        if self.limits.places is not None:
+            return STRONG
+        return PULLS if full else PULLS[:1]
 
     def starts(self, rough: Iterable[tuple[Generators, float]]) -> Generators:
         """Least squares from many starts, as `rough` gives them, best first; limits pull."""
@@ -76,8 +85,11 @@ class Optima:
                 desired, begun, self.limits.of, pull=pull, held=held, taken=ROUGH_STEPS - 1
             )
             found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
-        batch = self.aims.kind.joined(found)
+        batch = self.aims.made.joined(found)
         square = desired.square(desired.errors(batch))
+        if self.limits.places is not None:
+            missed = np.maximum(-self.limits.of(batch).value.min(axis=1), 0.0)
+            square = np.sqrt(square / desired.weights.sum()) + missed
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
 
     @property
@@ -94,7 +106,15 @@ class Optima:
         """Generators near the desired output."""
         if self.aims.triangle is not None:
             return driven_starts(self.aims, desired, rng, 1.0)
-        return function_starts(self.aims.kind, desired, rng, self.first)
+        near = function_starts(self.aims.kind, desired, rng, self.first)
+        if self.limits.places is not None and self.first is None:  # the best may be far from the best without
+            near = near.joined([near, anywhere(self.aims.kind, desired, rng)])
+        return self._placed(near)
+
+    def _placed(self, starts: Generators) -> Generators:
+        """Starts in places that suit their limits."""
+        places = self.limits.places
+        return places.placed(starts.finite) if isinstance(places, PlaceLimits) else starts
 
     def aim(self) -> Aim:
         """The error to be made least."""
@@ -106,7 +126,8 @@ class Optima:
     @property
     def apart(self) -> tuple[int, int]:
         """Equal for searches whose limits differ in their transmission angle alone."""
-        by_driver, by_sense = self.limits.offset is not None, self.limits.rates is not None
+        by_driver = self.limits.offset is not None or self.aims.directed
+        by_sense = self.limits.rates is not None
         return by_driver * self.driver, by_sense * self.sense
 
     def quick_pass(self) -> Generators:
@@ -158,7 +179,8 @@ def optima(
         batch = _Batch.of(some)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, SHORT), _hopeful)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, EARLY), _distinct)
-        batch, ends = batch.chosen(refined(batch.aim, batch.generators), _best if few else _distinct)
+        steps = STEPS if batch.aim.limits.places is None else LONG
+        batch, ends = batch.chosen(refined(batch.aim, batch.generators, steps), _best if few else _distinct)
         if batch.aim.greatest:
             ends = batch.with_extremes()
         batch, ends = batch.chosen(ends, lambda some: _apart(some, some.error, some.missed <= missed))

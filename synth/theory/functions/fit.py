@@ -117,7 +117,7 @@ def best_apart(batch: Generators, square: FloatArray, cell: float) -> IntArray:
     [2, 1]
     """
     order = np.argsort(square, kind="stable")
-    shape = batch.shape.copy()
+    shape = batch.own_shape.copy()
     shape[:, -1] %= 2 * np.pi
     keys = np.column_stack([np.round(shape / cell), batch.assembly])[order]
     first = np.unique(keys, axis=0, return_index=True)[1]

@@ -166,6 +166,10 @@ class CouplerFourBars(FourBars):
         """The four-bars whose coupler it is, with r3 and r4 in their places."""
         return FourBars(self.shape[:, _EXCHANGED], -self.assembly)
 
+    def closing(self, shape: Sequence[Any]) -> tuple[tuple[Any, Any, Any, Any], FloatArray]:
+        r1, r2, r4, r3 = self.sizes_of(shape)
+        return (r1, r2, r3, r4), -self.assembly
+
     @classmethod
     def of_linkage(cls, linkage: Any, unit: float, driver: int, theta2: float) -> Self:
         made = FourBars.of_linkage(linkage, unit, driver, theta2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -33,6 +33,7 @@ class ShapeLimits:
     # (R, 3): inputs, with the least and the greatest d(output)/d(input) there, in units of the output
     rates: FloatArray | None = None
     triangle: Rows | None = None  # of a cylinder on the driver
+    places: PlaceRows | None = None  # at single inputs or all of them
 
     def of(self, batch: Limited) -> Dual:
         """Limits (M, L) with derivatives by the shape (M, L, K)."""
@@ -59,6 +60,17 @@ class Rows(Protocol):
         """The unit of the lengths of the linkage."""
 
     def rows(self, logs: Dual) -> Dual:
+        """Limits (M, L) with derivatives, zero or positive where they are kept."""
+
+
+class PlaceRows(Protocol):
+    """Limits of joints and links in their places, as `PlaceLimits`."""
+
+    @property
+    def free(self) -> FloatArray:
+        """1 for every number of a place that may change, 0 for one that stays, (4,)."""
+
+    def rows(self, batch: Any) -> Dual:
         """Limits (M, L) with derivatives, zero or positive where they are kept."""
 
 

@@ -60,6 +60,8 @@ class Aim:
         """1 for every number of a shape that may change, 0 for one that stays, (K,)."""
         free = np.ones(batch.UNKNOWNS)
         free[-1] = 0.0 if self.held else 1.0
+        if self.limits.places is not None and batch.PLACE.stop:
+            free[batch.PLACE] = self.limits.places.free
         return free
 
     def errors(self, batch: Generators) -> FloatArray:
@@ -158,8 +160,9 @@ class _Linear:
 
     @property
     def finite(self) -> BoolArray:
-        """Whether the output has a rate everywhere, (M,): in a dead position it has none."""
-        return np.asarray(np.isfinite(self.slopes).all(axis=(1, 2)))
+        """Whether output and limits have rates everywhere, (M,): in a dead position there are none."""
+        known = np.isfinite(self.slopes).all(axis=(1, 2)) & np.isfinite(self.by_shape).all(axis=(1, 2))
+        return np.asarray(known)
 
     def step(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The best steps within radii (M,), shape (M, K), and the scores predicted for them."""

@@ -39,6 +39,7 @@ class Generators(ABC):
     EXACT: ClassVar[int]  # number of pairs that one or a few go through
     LINEAR: ClassVar[int]  # number of pairs that one goes through, where both start angles are given
     FIRST_IS_LINK: ClassVar[bool] = True  # of `lengths`; otherwise it is the unit
+    PLACE: ClassVar[slice] = slice(0, 0)  # numbers of the shape that its place has, as in `placed`
     ONE_SENSE: ClassVar[bool] = False  # the opposite output is the same linkage, turned by half a turn
 
     dyad: ClassVar[ClosingDyad]
@@ -65,6 +66,11 @@ class Generators(ABC):
     def finite(self) -> Self:
         """Those whose numbers are finite."""
         return self[np.isfinite(self.shape.sum(axis=1))]
+
+    @property
+    def own_shape(self) -> FloatArray:
+        """The shape without its place: generators in different places are alike."""
+        return self.shape
 
     @property
     def columns(self) -> list[FloatArray]:
@@ -132,6 +138,31 @@ class Generators(ABC):
         crank = r2 * Vector(np.cos(theta2), np.sin(theta2))
         return crank, self.dyad.closed(self.ground, crank, r3, r4, self.assembly[:, None])
 
+    def joints(self, inputs: FloatArray) -> tuple[Vector, Vector]:
+        """A and B on the ground at inputs (N,) or (M, N), with derivatives by the shape."""
+        every = np.broadcast_to(np.eye(self.UNKNOWNS), (len(self), self.UNKNOWNS, self.UNKNOWNS))
+        shape = [Dual(column, every[:, [k]]) for k, column in enumerate(self.columns)]
+
+        def slope() -> FloatArray:
+            moved = np.zeros((len(self), inputs.shape[-1], self.UNKNOWNS))
+            moved[..., -1] = 1.0
+            for k, by_it in enumerate(reversed(self.turned_by(inputs)), start=2):
+                moved[..., -k] = by_it
+            return moved
+
+        turned = self.turns(inputs)
+        theta2 = Dual(self.shape[:, -1:] + turned, slope)
+        (_, r2, r3, r4), assembly = self.closing(shape)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            crank = r2 * Vector(np.cos(theta2), np.sin(theta2))
+            loop = self.dyad.closed(self.ground, crank, r3, r4, assembly[:, None])
+            along = loop.along if self.dyad.bars else loop.rod * loop.along
+        return crank, crank + along
+
+    def closing(self, shape: Sequence[Any]) -> tuple[tuple[Any, Any, Any, Any], FloatArray]:
+        """`sizes_of` the linkages themselves, and their assemblies (M,)."""
+        return self.sizes_of(shape), self.assembly
+
     def outputs(self, inputs: FloatArray) -> FloatArray:
         """Angle of link 4 (rad) or place of the slide, shape (M, N); NaN where the loop is open.
 
@@ -188,6 +219,8 @@ class Generators(ABC):
             if limits.margin is not None:
                 parts += [share - limits.margin for share in self.dyad.margins(sizes)]
                 parts += self.limited_stroke(sizes, limits.stroke)
+            if limits.places is not None:
+                parts.append(limits.places.rows(self))
         return joined_rows(parts)
 
     def _transmission(self, limits: ShapeLimits, sizes: Sizes) -> Dual:

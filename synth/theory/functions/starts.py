@@ -11,6 +11,7 @@ from grashof.synth.theory.functions.output import Generators
 GRID = 40  # starts of driver and output each
 COARSE, FEW = 12, 6  # the same, and `SUBSETS`, where many tasks are tried
 ANYTHING = 20_000  # random linkages with a given driver angle; few of them close over the range
+ROUND = 16  # driver angles of random linkages where it is free
 SUBSETS = 30  # of as many pairs as can be met, through which exact linkages begin
 _SAME = 1e-9  # rad
 
@@ -57,6 +58,14 @@ def few_starts(kind: type[Generators], desired: DesiredOutput, rng: np.random.Ge
     shift = np.pi * rng.random(2) / COARSE
     driver, place = (each.ravel() for each in np.meshgrid(half + shift[0], half + shift[1]))
     return kind.joined([_of_subsets(kind, desired, rng, FEW), on_grid(kind, desired, driver, place)])
+
+
+def anywhere(kind: type[Generators], desired: DesiredOutput, rng: np.random.Generator) -> Generators:
+    """Random linkages from evenly distributed driver angles, in the size that suits the desired output."""
+    firsts = 2 * np.pi * (np.arange(ROUND) + rng.random()) / ROUND
+    span = float(desired.turned[-1])
+    found = [kind.anything(rng, ANYTHING // ROUND, first, span) for first in firsts.tolist()]
+    return kind.joined(found).scaled_to(desired.turned, desired.output).finite
 
 
 def on_grid(

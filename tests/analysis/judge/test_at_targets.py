@@ -64,9 +64,11 @@ def test_past_toggle_is_the_bend_between_driver_and_coupler(past: float) -> None
     assert verdict.ok
     a, b = joints(line + past)
     bend = abs(np.angle((b - a) / a))
-    assert past_toggle(LEG, verdict, 4) == pytest.approx(np.sign(past) * bend, abs=1e-9)
+    assert past_toggle(LEG, verdict.theta2, verdict.assembly, 4) == pytest.approx(
+        np.sign(past) * bend, abs=1e-9
+    )
     back = verify(LEG, task_at(theta2[::-1]), Requirements(rotatability="any"))
-    assert past_toggle(LEG, back, 0) == pytest.approx(np.sign(past) * bend, abs=1e-9)
+    assert past_toggle(LEG, back.theta2, back.assembly, 0) == pytest.approx(np.sign(past) * bend, abs=1e-9)
 
 
 def figures(theta2: float) -> dict[str, float]:

@@ -1,0 +1,399 @@
+"""Limits of the joints and the coupler of function generators, at single pairs, all pairs or in between.
+
+A function states no place: where limits of places leave O2, the scale or the direction of the ground line
+free, these are numbers of the search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from grashof.analysis.judge.design import Design
+from grashof.problems import Box, Problem, Requirements, TargetLimits
+from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.box import ANYWHERE
+from grashof.problems.values.requirements.function_ground import FunctionGround
+from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.vector import Vector
+from grashof.synth.quantities.formulas import Part, View, parts_of, range_of
+from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.regions import hull_parts, pairs_of
+from grashof.synth.quantities.target_constraints import AtTarget, target_constraints
+from grashof.synth.theory.functions.limits import joined_rows
+from grashof.synth.theory.functions.output import Generators
+from grashof.synth.theory.functions.placed import PLACED, Placed
+
+INSIDE = 4e-8  # sizes: margin by which lengths are kept, so that rounding misses none
+ALONG = 25  # inputs at which what is limited over the motion is computed, beside its extremes
+CLOSER = 20.0  # by how much an extreme is bracketed more closely in a second look
+FLATTEST = 0.05  # slope of a limit by its angle below which it is made steeper no further
+AT_PAIRS = ("a", "b", "distances")  # limited at every pair
+OVER_MOTION = ("coupler_angle_deg", "coupler_rate", "mechanical_advantage_min")
+PLACES = frozenset({"a", "b", "instant_centre"})
+LENGTHS = PLACES | {"distances"}
+DIRECTED = PLACES | {"coupler_angle_deg"}  # by which mirror images differ
+TURNS, STEPS = 8, 6  # directions in which a place is looked for, and steps of each
+FEW = 7  # pairs that count in these
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceLimits:
+    """Limits of joints and links in their places, zero or positive where they are kept."""
+
+    kind: Kind
+    inputs: FloatArray  # (N,): those of the pairs, from the first
+    unit: float  # the usual unit of lengths, in that of the problem
+    usual: FloatArray  # (4,): the usual place, see `placed`
+    free: FloatArray  # (4,): 1 for every number of it that may change, 0 for one that stays
+    lengths: tuple[Limits, ...]  # of `Generators.lengths`, where the scale is free
+    offset: Limits | None  # of a block, likewise
+    parts: tuple[tuple[Part, Limits], ...]  # at all pairs, or of pivots
+    at: tuple[AtTarget, ...]
+    along: tuple[AtTarget, ...]  # at every input of the range, which is their only target
+    driver: int = 1
+
+    @classmethod
+    def of(cls, problem: Problem, kind: Kind, wanted: Requirements, unit: float | None) -> PlaceLimits | None:
+        """Those of a function; None where nothing of the kind is limited.
+
+        `wanted` are resolved; `unit` is the length of outputs that are travel.
+        """
+        task, stated = problem.task, problem.requirements
+        at = target_constraints(problem)
+        named = {name for name in AT_PAIRS if name in stated.limited}
+        along = {name: getattr(stated, name) for name in OVER_MOTION if getattr(stated, name) is not None}
+        if not (at or named or along):
+            return None
+        moving = {each.name for each in at} | named | set(along)
+        ground = FunctionGround.of(wanted)
+        length = ground.length if unit is None else unit
+        theta1 = ground.theta1 if unit is None else wanted.angle_of("slide_angle_deg") or 0.0
+        o2 = np.array(ground.placed(ground.length if unit is None else 0.0)[0]) / length
+        free = _free(wanted, moving, pinned=kind.dyad.pinned)
+        if task.lengthens or task.mirror is not None or not moving & (LENGTHS | DIRECTED):
+            free = np.zeros(4)
+        placed = named | ({"o2", "o4"} & stated.limited.keys() if free.any() else set[str]())
+        parts = [
+            (part, range_of(stated, name, part)) for name, part in parts_of(sorted(placed), kind.formulas)
+        ]
+        for name, region, x, y in pairs_of(stated, kind.formulas):
+            parts += hull_parts(name, region, x, y) if name in placed else []
+        single = TargetLimits(targets=[1], **along) if along else None
+        return cls(
+            kind,
+            task.inputs - task.span[0],
+            length,
+            np.array([*o2, 0.0, theta1]),
+            free,
+            (),
+            wanted.offset if free[2] else None,
+            tuple((part, limits) for part, limits in parts if limits != (-np.inf, np.inf)),
+            at,
+            () if single is None else tuple(AtTarget(single, name, 0) for name in along),
+        )
+
+    def settled(self, wanted: Requirements) -> Requirements:
+        """Requirements with the usual length of the ground where places depend on it, and it is not free."""
+        names = {part.name.partition(".")[0] for part, _ in self.parts} | {each.name for each in self.at}
+        if self.free[2] or not self.kind.dyad.pinned or names.isdisjoint(LENGTHS):
+            return wanted
+        return replace(wanted, r1=(self.unit, self.unit))
+
+    def with_sizes(self, sizes: Sequence[Limits]) -> PlaceLimits:
+        """The same with limits of `Generators.lengths`, which count where the scale is free."""
+        return replace(self, lengths=tuple(sizes)) if self.free[2] else self
+
+    @property
+    def directed(self) -> bool:
+        """Whether mirror images differ."""
+        named = {part.name.split(".")[0] for part, _ in self.parts}
+        return not DIRECTED.isdisjoint(named | {each.name for each in (*self.at, *self.along)})
+
+    def placed(self, batch: Generators) -> Generators:
+        """Generators in the places where they miss the limits by least, nearly."""
+        if not self.free.any():
+            return batch
+        some = np.unique(np.linspace(0, len(self.inputs) - 1, FEW).round().astype(int))
+        rough = replace(self, inputs=self.inputs[some]) if not self.at else self
+        made = PLACED[type(batch)].of(batch, self.usual)
+        turns = np.linspace(0, 2 * np.pi, TURNS, endpoint=False) if self.free[3] else np.zeros(1)
+        least, best = np.full(len(batch), np.inf), made.shape.copy()
+        for turn in turns:
+            shape = made.shape.copy()
+            shape[:, made.PLACE.stop - 1] += turn
+            there, missed = rough._moved(made.changed(shape))
+            better = missed < least
+            least, best = np.where(better, missed, least), np.where(better[:, None], there.shape, best)
+        return made.changed(best)
+
+    def _moved(self, batch: Placed) -> tuple[Placed, FloatArray]:
+        """Generators after steps of Gauss and Newton of their places alone, and their squared misses."""
+        place = batch.PLACE
+        square = np.full(len(batch), np.inf)
+        for _ in range(STEPS):
+            rows = self.rows(batch)
+            short = np.nan_to_num(np.minimum(rows.value, 0.0), nan=-1e3)
+            square = (short**2).sum(axis=1)
+            slope = np.nan_to_num(rows.slope[..., place] * (short < 0)[..., None])
+            normal = slope.swapaxes(1, 2) @ slope
+            scale = np.einsum("mii->mi", normal).max(axis=1)
+            normal = normal + (1e-6 * scale + 1e-12)[:, None, None] * np.eye(4)
+            step = np.linalg.solve(normal, (slope.swapaxes(1, 2) @ short[..., None]))[..., 0]
+            step = np.clip(step, [-np.inf, -np.inf, -1.0, -1.0], [np.inf, np.inf, 1.0, 1.0])
+            shape = batch.shape.copy()
+            shape[:, place] -= step * self.free
+            batch = batch.changed(shape)
+        return batch, square
+
+    def of_linkage(self, batch: Generators, linkage: Any) -> Generators:
+        """A generator where its linkage lies."""
+        if not self.free.any():
+            return batch
+        pinned = self.kind.dyad.pinned
+        size = float(linkage.lengths[0]) / self.unit if pinned else 1.0
+        angle = float(linkage.theta1 if pinned else linkage.slide_angle)
+        place = [*(np.asarray(linkage.o2) / self.unit), np.log(size), angle]
+        return PLACED[type(batch)].of(batch, np.where(self.free > 0, place, self.usual))
+
+    def standing(self, batch: Generators, wanted: Requirements) -> Requirements:
+        """Requirements by which a generator is placed where it lies."""
+        if not isinstance(batch, Placed):
+            return wanted
+        x, y, log, angle = batch.shape[0, batch.PLACE].tolist()
+        o2 = _inside(wanted.o2, self.unit * x, self.unit * y)
+        if not self.kind.dyad.pinned:
+            return replace(wanted, o2=o2, slide_angle_deg=float(np.degrees(angle)))
+        length = self.unit * np.exp(log)
+        o4 = _inside(wanted.o4, o2.x[0] + length * np.cos(angle), o2.y[0] + length * np.sin(angle))
+        return replace(wanted, o2=o2, o4=o4)
+
+    def rows(self, batch: Generators) -> Dual:
+        """All of them (M, L), in usual units or rad."""
+        with np.errstate(all="ignore"):
+            found = self._rows(batch)
+
+        def slope() -> FloatArray:
+            with np.errstate(all="ignore"):
+                return found.slope
+
+        return Dual(found.value, slope)
+
+    def _rows(self, batch: Generators) -> Dual:
+        found = list[Dual]()
+        number = {k: row for row, k in enumerate(self._numbers)}
+        if self.parts or self.at:
+            view = _InPlace(self, batch, self.inputs[list(number)])
+            for part, limits in self.parts:
+                value = np.sqrt(part.of(view)) if part.squared else part.of(view)
+                found += self._sides(value, limits)
+            if self.at:
+                design = view.at_targets(number, len(self.inputs))
+                for each in self.at:
+                    found += self._of_target(each, design, self._sense(each, batch))
+        for each in self.along:
+            found += self._over_motion(each, batch)
+        found += self._of_scale(batch)
+        return joined_rows(found)
+
+    @property
+    def _numbers(self) -> list[int]:
+        """The pairs that count."""
+        if self.parts:
+            return [*range(len(self.inputs))]
+        ends = {0, len(self.inputs) - 1} if any(each.name == "past_deg" for each in self.at) else set[int]()
+        return sorted(ends | {each.k for each in self.at})
+
+    def place(self, batch: Generators) -> tuple[Any, ...]:
+        """The numbers of the place: with derivatives where they are free."""
+        if not batch.PLACE.stop:
+            return tuple(self.usual.tolist())
+        columns = range(*batch.PLACE.indices(batch.UNKNOWNS))
+        every = np.eye(batch.UNKNOWNS)[:, None]
+        each = [
+            Dual(
+                batch.shape[:, [column]],
+                np.broadcast_to(free * every[column], (len(batch), 1, batch.UNKNOWNS)),
+            )
+            for column, free in zip(columns, self.free, strict=True)
+        ]
+        return tuple(each)
+
+    def _sides(self, value: Any, limits: Limits) -> list[Dual]:
+        """Room of a length on both sides, a little less than there is."""
+        low, high = limits
+        inside = min(INSIDE * self.unit, (high - low) / 2)
+        found = [value - (low + inside)] * bool(np.isfinite(low))
+        found += [(high - inside) - value] * bool(np.isfinite(high))
+        return [row / self.unit for row in found]
+
+    def _sense(self, limit: AtTarget, batch: Generators) -> FloatArray | None:
+        """On which side of the line of driver and coupler the motion to a toggle begins, (M, 1)."""
+        if limit.name != "past_deg":
+            return None
+        end = float(self.inputs[limit.k])
+        between = np.linspace(float(self.inputs[0 if limit.k else -1]), end, ALONG)
+        a, b = (Vector(each.x.value, each.y.value) for each in batch.joints(between))
+        turned = np.unwrap(self.driver * a.angle_to(b - a), axis=1)
+        line = np.pi * np.round(turned[:, -1:] / np.pi)
+        return np.asarray(np.sign(turned[:, :1] - line))
+
+    def _of_target(self, limit: AtTarget, design: Design, sense: FloatArray | None = None) -> Iterator[Dual]:
+        if limit.name in LENGTHS:
+            for value, limits in limit.numbers(design):
+                yield from self._sides(value, limits)
+            return
+        steep = _steep(limit.limits, limit.name)
+        if sense is not None:
+            rows = [limit.past_from(design, sense)]
+        elif limit.name == "mechanical_advantage_min":
+            rows = [limit.advantage_share(design)]
+        else:
+            rows = limit(design)
+        yield from (-steep * row for row in rows)
+
+    def _over_motion(self, limit: AtTarget, batch: Generators) -> Iterator[Dual]:
+        """A limit at inputs of the range, and where it is kept by least in between."""
+
+        def rows(inputs: FloatArray) -> list[Dual]:
+            return list(self._of_target(limit, _InPlace(self, batch, inputs).at_all()))
+
+        inputs = np.linspace(0.0, float(self.inputs[-1]), ALONG)
+        every = rows(inputs)
+        yield from every
+        for number, row in enumerate(every):
+            at = _lowest(inputs, row.value)
+            step, last = float(inputs[1]) / CLOSER, float(inputs[-1])
+            near = np.clip(at, step, last - step) + step * np.array([-1.0, 0.0, 1.0])
+            yield rows(_vertex(near, rows(near)[number].value, last))[number]
+
+    def _of_scale(self, batch: Generators) -> Iterator[Dual]:
+        """Lengths within their limits, where the scale is free."""
+        if not self.lengths:
+            return
+        _, _, log, _ = self.place(batch)
+        every = np.eye(batch.UNKNOWNS)[:, None]
+        lengths = [0.0, *(Dual(column, every[[k]]) for k, column in enumerate(batch.columns[: batch.LINKS]))]
+        for length, limits in zip(lengths, self.lengths, strict=True):
+            full = log + length + float(np.log(self.unit))
+            for sign, edge in zip((1.0, -1.0), limits, strict=True):
+                if 0 < edge < np.inf:
+                    inside = INSIDE if limits[0] < limits[1] * (1 - 2 * INSIDE) else 0.0
+                    yield sign * (full - float(np.log(edge))) - inside
+        if self.offset is not None:
+            shape = [Dual(column, every[[k]]) for k, column in enumerate(batch.columns)]
+            offset = self.driver * self.unit * np.exp(log) * batch.sizes_of(shape)[3]
+            yield from self._sides(offset, self.offset)
+
+
+class _InPlace(View):
+    """Generators at some inputs, in the unit of the problem, with derivatives by the shape."""
+
+    def __init__(self, limits: PlaceLimits, batch: Generators, inputs: FloatArray) -> None:
+        x, y, log, self.angle = limits.place(batch)
+        a, b = batch.joints(inputs)
+        unit, self.kind = limits.unit * np.exp(log), limits.kind
+        cosine, sine = np.cos(self.angle), np.sin(self.angle)
+
+        def placed(at: Vector) -> Vector:
+            beside = limits.driver * at.y
+            return Vector(
+                limits.unit * x + unit * (at.x * cosine - beside * sine),
+                limits.unit * y + unit * (at.x * sine + beside * cosine),
+            )
+
+        none = np.zeros((len(batch), 1))
+        still = Dual(none, np.zeros((len(batch), 1, batch.UNKNOWNS)))
+        self.o2, self.a, self.b = placed(Vector(still, still)), placed(a), placed(b)
+        if self.kind.dyad.pinned:
+            self.o4 = placed(Vector(still + 1.0, still))
+
+    def at_targets(self, columns: Mapping[int, int], count: int) -> Design:
+        """As limits at single targets see it, given the column of every target that counts."""
+        a, b = (
+            [
+                (at.x.column(columns[k]), at.y.column(columns[k])) if k in columns else None
+                for k in range(count)
+            ]
+            for at in (self.a, self.b)
+        )
+        return self._design(a, b)
+
+    def at_all(self) -> Design:
+        """All inputs as a single target."""
+        return self._design([(self.a.x, self.a.y)], [(self.b.x, self.b.y)])
+
+    def _design(self, a: Sequence[Any], b: Sequence[Any]) -> Design:
+        dyad = self.kind.dyad
+        nothing: Any = None
+        return Design(
+            o2=(self.o2.x, self.o2.y),
+            o4=(self.o4.x, self.o4.y) if dyad.pinned else None,
+            r1=nothing,
+            r2=nothing,
+            r3=True if dyad.bars else None,
+            r4=nothing,
+            theta1=nothing,
+            coupler_point=nothing,
+            theta2=nothing,
+            a=a,
+            b=b,
+            p=(),
+            slide_angle=None if dyad.pinned else self.angle,
+        )
+
+
+def _free(wanted: Requirements, moving: set[str], *, pinned: bool) -> FloatArray:
+    """Which numbers of a place may change, 1 or 0, (4,): those that limits depend on and do not fix."""
+    o2, o4 = wanted.o2 or ANYWHERE, wanted.o4 or ANYWHERE
+    by_place = bool(moving & PLACES) or (pinned and (o2 is not ANYWHERE or o4 is not ANYWHERE))
+    turns = by_place or "coupler_angle_deg" in moving
+    grows = pinned and (by_place or "distances" in moving)
+    both = pinned and not any(map(_wide, (o2.x, o2.y, o4.x, o4.y)))
+    angle = wanted.ground_angle_deg if pinned else wanted.slide_angle_deg
+    held = both or angle is not None or wanted.theta2_start_deg is not None
+    fixed = both or (wanted.r1 is not None and not _wide(wanted.r1))
+    free = [by_place and _wide(o2.x), by_place and _wide(o2.y), grows and not fixed, turns and not held]
+    return np.array(free, dtype=np.float64)
+
+
+def _wide(limits: Limits) -> bool:
+    return limits[0] < limits[1]
+
+
+def _inside(box: Box | None, x: float, y: float) -> Box:
+    """A place of a pivot, moved into its box by what rounding left outside."""
+    x, y = (
+        float(np.clip(at, *side))
+        for at, side in zip((x, y), ((box or ANYWHERE).x, (box or ANYWHERE).y), strict=True)
+    )
+    return Box(x=(x, x), y=(y, y))
+
+
+def _steep(limits: TargetLimits, name: str) -> float:
+    """The factor by which a limit of a cosine grows by its angle where it begins to be missed."""
+    if name not in ("past_deg", "coupler_angle_deg"):
+        return 1.0
+    low, high = np.radians(getattr(limits, name)).tolist()
+    slope = 2 * np.sin(high - low) if name == "past_deg" else np.sin(min((high - low) / 2, np.pi))
+    return float(1.0 / max(abs(slope), FLATTEST))
+
+
+def _lowest(inputs: FloatArray, values: FloatArray) -> FloatArray:
+    """Where a parabola about the least of some values (M, N) is least, (M, 1)."""
+    k = np.clip(np.nan_to_num(values, nan=np.inf).argmin(axis=1), 1, len(inputs) - 2)[:, None] + [-1, 0, 1]
+    return _vertex(inputs[k], np.take_along_axis(values, k, axis=1), float(inputs[-1]))
+
+
+def _vertex(at: FloatArray, values: FloatArray, most: float) -> FloatArray:
+    """The least place of parabolas through three values (M, 3) each at even inputs, up to a last one."""
+    left, middle, right = values.T
+    bend = left - 2 * middle + right
+    with np.errstate(divide="ignore", invalid="ignore"):
+        moved = np.where(bend > 0, (left - right) / (2 * bend), np.sign(left - right))
+    moved = np.clip(np.nan_to_num(moved), -1.0, 1.0)
+    found: FloatArray = np.clip(at[:, 1] + moved * (at[:, 2] - at[:, 1]), 0.0, most)[:, None]
+    return found
