@@ -238,8 +238,7 @@ def coupler_fit_r2(
     ends = (np.asarray(end, dtype=np.float64) for end in (theta2_start, theta2_end))
     given = np.broadcast_arrays(*ends, members)
     start, end, member = (each.ravel() for each in given)
-    flat = linkage[None][np.unravel_index(member, (1, *linkage.shape))]
-    return _settled_r2(degree, flat, start, end).reshape(given[0].shape)[()]
+    return _settled_r2(degree, linkage.flat[member], start, end).reshape(given[0].shape)[()]
 
 
 def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:

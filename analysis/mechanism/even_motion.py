@@ -178,8 +178,7 @@ def angles_at_shares(
     if len(linkage.mechanism.dyads) == 1:
         return first_motion(linkage, start, end)[..., None].theta2
     start, end = (np.broadcast_to(each, linkage.shape).ravel() for each in (start, end))
-    flat = linkage[None][np.unravel_index(np.arange(len(start)), (1, *linkage.shape))]
-    of_rows, members = angles_of_rows(flat, start, end), np.arange(len(start)).reshape(linkage.shape)
+    of_rows, members = angles_of_rows(linkage.flat, start, end), np.arange(len(start)).reshape(linkage.shape)
 
     def angles(share: FloatArray) -> FloatArray:
         shape = *np.broadcast_shapes(share.shape[:-1], linkage.shape), share.shape[-1]

@@ -39,7 +39,8 @@ LONG = 40  # targets: programmes of more can be stopped, and are not begun after
 MOST_ITERATIONS = 150
 MENDING = 60  # iterations of a near miss mended in place, which takes a dozen where it succeeds
 PATIENCE = (150, 400)  # iterations where the error is bounded: for trade-offs, and where the user requires it
-NEAR = 1.0  # most violation on the way from a design, which has none: others never return
+# Most violation of constraints on the way from a feasible start: solves that exceed it rarely return.
+NEAR = 1.0
 SLIGHT = 1e-6  # weight of the error beside the slack
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
 EXCHANGES = 4  # most repetitions of a solve

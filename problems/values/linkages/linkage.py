@@ -106,6 +106,11 @@ class Linkage(Displayed):
                 found[row.name] = int(value)
         return found | {name: "-".join(map(str, np.ravel(x))) for name, x in self.choices.items()}
 
+    @property
+    def flat(self) -> Self:
+        """The linkages of a batch in a row, shape (n,); a single one as a batch of one."""
+        return self[None][np.unravel_index(np.arange(np.size(self.r2)), (1, *self.shape))]
+
     def scaled(self, factor: float, origin: FloatArray) -> Self:
         """The linkage with all lengths times a factor, its places measured from `origin`, shape (2,)."""
 

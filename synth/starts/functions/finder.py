@@ -176,11 +176,8 @@ class Functions(DesignFinder):
         if self.aims.obstacle or not self.aims.exact or counts.get(FINDS):
             return self.aims.obstacle
         pairs = f"through the {len(self.aims.task)} pairs on one branch under these requirements"
-        if (
-            self.aims.triangle is not None or self.aims.places is not None
-        ):  # some cylinders, or places, of many
-            return f"no {self.aims.kinds[:-1]} was found {pairs}"
-        return f"no {self.aims.kinds[:-1]} goes {pairs}"
+        not_all = self.aims.triangle is not None or self.aims.places is not None  # of cylinders, of places
+        return f"no {self.aims.kinds[:-1]} {'was found' if not_all else 'goes'} {pairs}"
 
     def _round(
         self, batch: Sequence[tuple[Generators, int]], *, skip: int = 0, together: bool = False

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grashof.analysis.numerics.quadrature import gauss_legendre, held, integrate
+from grashof.analysis.numerics.quadrature import gauss_legendre, held, integrate, settled_sums
 
 Floats = npt.NDArray[np.float64]
 INSIDE = st.floats(0.01, 0.99)
@@ -51,6 +51,21 @@ def test_reversed_edges_change_the_sign() -> None:
     assert there.total == pytest.approx(np.sin(1), abs=1e-15)
     assert back.total == pytest.approx(-np.sin(1), abs=1e-15)
     assert there.error == pytest.approx(back.error)
+
+
+def test_sums_that_settle_at_once_are_the_integrals_and_others_are_told_apart() -> None:
+    def curves(x: Floats) -> Floats:
+        smooth, kinked, jump = x
+        return np.stack([np.cos(3 * smooth), np.abs(kinked - 0.4), np.where(jump > 0.5005, 1.0, 0.0)])
+
+    edges = np.array([[0.0, 0.5, 1.0], [0.0, 0.3, 1.0], [0.0, 0.5, 1.0]])
+    sums, settled = settled_sums(curves, edges)
+    assert settled.tolist() == [True, False, False]
+    assert sums[0] == pytest.approx(np.sin(3) / 3, abs=1e-15)
+    whole = integrate(lambda x: np.cos(3 * x), edges[0]).total
+    assert sums[0] == pytest.approx(float(whole), abs=1e-16)
+    backwards, _ = settled_sums(lambda x: np.cos(3 * x), edges[:1, ::-1])
+    assert backwards == pytest.approx(-np.sin(3) / 3, abs=1e-15)
 
 
 @given(st.lists(INSIDE, min_size=1, max_size=20))

@@ -56,6 +56,13 @@ def test_indexing_adds_axes() -> None:
     assert batch[..., 0] == batch[0]
 
 
+def test_a_batch_of_any_shape_is_a_row_of_linkages() -> None:
+    batch = batch_of(6)[np.arange(6).reshape(2, 3)]
+    assert batch.flat.r2.tolist() == batch_of(6).r2.tolist()
+    assert batch.flat.o4.shape == (6, 2)
+    assert crank_rocker().flat[0] == crank_rocker()
+
+
 def test_a_single_linkage_has_nothing_to_index() -> None:
     with pytest.raises(IndexError):
         crank_rocker()[0]
