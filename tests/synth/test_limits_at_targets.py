@@ -36,13 +36,9 @@ def test_a_toggle_closes_past_its_position(task: Task, last: int) -> None:
     result = synthesize(Problem(task=task, requirements=wanted), seed=0, enough=5, starts=20)
     assert len(result) > 0
     for each in result.candidates:
-        assert (
-            2
-            <= round(
-                np.degrees(past_toggle(each.linkage, each.verdict.theta2, each.verdict.assembly, last - 1)), 6
-            )
-            <= 5
-        )
+        verdict = each.verdict
+        past = np.degrees(past_toggle(each.linkage, verdict.theta2, verdict.assembly, last - 1))
+        assert 2 <= round(past, 6) <= 5
 
 
 @pytest.mark.slow
