@@ -17,8 +17,8 @@ from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import same_curve
-from grashof.synth.theory.distinct import apart, mirrored, signature
-from grashof.synth.theory.symmetry import middle_of, symmetries
+from grashof.synth.theory.distinct import apart, mirrored, signatures
+from grashof.synth.theory.symmetry import symmetries
 
 ALIKE = 0.05  # share of the largest number of two designs by which they differ at most
 # Of the size of the task, between joints: near one another, and as good as in one place; deg.
@@ -54,12 +54,10 @@ def best_related(problem: Problem, best_first: Sequence[Candidate]) -> IntArray:
     are near those of the other, in sizes of the task, also with driver and output exchanged; and those that
     share one of its dyads and its transmission angle, which that dyad then decides.
     """
-    middle, first = middle_of(problem.task), np.arange(len(best_first))
-    placed = problem.task.has_position.any()
+    task, first = problem.task, np.arange(len(best_first))
     for alike_in_kind in by_kind([candidate.linkage for candidate in best_first]):
         mine, kind = np.array(alike_in_kind), best_first[alike_in_kind[0]].linkage.mechanism
-        signatures = np.array([signature(best_first[k].linkage, middle if placed else None) for k in mine])
-        alike = best_alike(problem.task, signatures, kind)
+        alike = best_alike(task, signatures(task, [best_first[k].linkage for k in mine]), kind)
         if len(kind.loops) == 1 and not kind.slides and problem.task.limits_size:
             heads = np.flatnonzero(alike == np.arange(len(mine)))
             akin = _akin([best_first[k] for k in mine[heads]], problem.task.size)

@@ -13,7 +13,7 @@ from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate, same_error
-from grashof.synth.theory.distinct import DISTINCT, origin_of, pick_apart, signature, signatures
+from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature, signatures
 
 BLOCK = 256  # designs compared with all others at once
 # Digits that count, the others being rounding noise: of errors in sizes and of sizes, of objectives (a right
@@ -58,8 +58,7 @@ def distinct(
     """At most `most` candidates, each at least `least` from the others, in their order."""
     if not candidates:
         return ()
-    origin = origin_of(problem.task)
-    every = signatures([candidate.linkage for candidate in candidates], origin)
+    every = signatures(problem.task, [candidate.linkage for candidate in candidates])
     picked = pick_apart(every, -np.arange(len(candidates), dtype=np.float64), least, most)
     return tuple(candidates[i] for i in picked)
 

@@ -18,7 +18,7 @@ from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.start import Proposal, Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt, Outcome
-from grashof.synth.theory.distinct import DISTINCT, apart, origin_of, signature
+from grashof.synth.theory.distinct import DISTINCT, apart, task_signature
 
 FRUITLESS = 64  # solves without a verified exact design after which the search ends
 STALE = 20  # consecutive rounds without a new exact design after which it ends
@@ -103,9 +103,8 @@ class Leaders:
 
     def add(self, candidates: Iterable[Candidate]) -> None:
         """Add designs."""
-        origin = origin_of(self.problem.task)
         for candidate in candidates:
-            number, numbers = len(self._every), signature(candidate.linkage, origin)
+            number, numbers = len(self._every), task_signature(self.problem.task, candidate.linkage)
             if number == len(self._signatures):
                 grown = np.empty((max(16, 2 * number), len(numbers)))
                 grown[:number] = self._signatures[:number] if number else 0.0

@@ -12,7 +12,7 @@ from grashof.synth.quantities.along_motion import ALONG, along_motion
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Many, Screened
 from grashof.synth.quantities.wanted_torque import DEVIATIONS
-from grashof.synth.theory.distinct import best_first, pick_apart, signature
+from grashof.synth.theory.distinct import best_first, pick_apart, task_signature
 from grashof.synth.theory.stopping import raise_if_overdue
 
 POOL = 6000  # linkages among which starts are picked
@@ -145,8 +145,7 @@ def _pool(score: FloatArray) -> IntArray:
 
 
 def _signatures(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
-    origin = np.array([scaled.frame.origin.real, scaled.frame.origin.imag])
-    return signature(scaled.linkages(linkages.points, linkages.assembly), origin)
+    return task_signature(scaled.problem.task, scaled.linkages(linkages.points, linkages.assembly))
 
 
 def scores(scaled: ScaledProblem, linkages: Screened) -> FloatArray:

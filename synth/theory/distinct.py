@@ -9,6 +9,7 @@ import numpy as np
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.synth.theory.symmetry import middle_of
 
 # Share of the largest number of two designs by which they differ at least: 1 %, and a quarter more
 # because pivots are measured from the middle of the task, where the largest number is smaller.
@@ -20,9 +21,8 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
 
     Of slider kinds the offset in place of r4; of a slider-crank the slide's direction, of length r2 + r3, in
     place of O4, of an inverted one nothing in place of r3. Pivots are measured from `origin`, shape (2,),
-    where one is given: from the middle of the task they do not depend on the origin of the user. Of six-bars
-    all parameters but signs, without an origin places from O2; a direction has the length of all links
-    together.
+    where one is given. Of six-bars all parameters but signs, without an origin places from O2; a direction
+    has the length of all links together.
     """
     middle = np.zeros(2) if origin is None else origin
     if len(linkage.mechanism.loops) > 1:
@@ -39,18 +39,35 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     )
 
 
-def signatures(linkages: Sequence[Linkage], origin: FloatArray | None = None) -> FloatArray:
+def task_signature(task: Task, linkage: Linkage) -> FloatArray:
+    """The signature by which designs for a task are compared, shape (..., K).
+
+    Pivots are measured from the middle of the task (`middle_of`). Where no target has a position, a linkage
+    of one loop is moved to O2 = 0 and turned to the x axis, and where no target has a length either, the
+    ground gets the length 1: copies are one design.
+    """
+    if task.has_position.any():
+        return signature(linkage, middle_of(task))
+    numbers = signature(linkage)
+    return numbers if len(linkage.mechanism.loops) > 1 else _unplaced(task, numbers, linkage)
+
+
+def _unplaced(task: Task, numbers: FloatArray, linkage: Linkage) -> FloatArray:
+    """Signatures of linkages of one loop without place, direction and, where any will do, scale."""
+    ground = numbers[..., 2:4] - (numbers[..., :2] if "o4" in linkage.mechanism.ground else 0.0)
+    length = np.hypot(*np.moveaxis(ground, -1, 0))[..., None]
+    nothing = np.zeros_like(length)
+    made = np.concatenate([nothing, nothing, length, nothing, numbers[..., 4:]], axis=-1)
+    return made if task.states_length else made / length
+
+
+def signatures(task: Task, linkages: Sequence[Linkage]) -> FloatArray:
     """Signatures of linkages of any kinds, (n, K); those of kinds with fewer numbers end with zeros."""
-    found = [signature(linkage, origin) for linkage in linkages]
+    found = [task_signature(task, linkage) for linkage in linkages]
     rows = np.zeros((len(found), max(map(len, found), default=0)))
     for row, numbers in zip(rows, found, strict=True):
         row[: len(numbers)] = numbers
     return rows
-
-
-def origin_of(task: Task) -> FloatArray | None:
-    """The middle of a task, shape (2,); None where no target has a position: its designs may lie anywhere."""
-    return task.middle if task.has_position.any() else None
 
 
 def _of_six_bar(linkage: Linkage, origin: FloatArray) -> FloatArray:

@@ -332,6 +332,11 @@ class FunctionTask(Task):
         return float(np.ptp(self.outputs) if self.law is None else self.law.output_range)
 
     @property
+    def states_length(self) -> bool:
+        """Whether inputs or outputs are lengths."""
+        return self.travels or self.lengthens
+
+    @property
     def output_unit(self) -> float:
         """The unit of output errors: 1 rad, or the full travel."""
         return self.size if self.travels else 1.0

@@ -51,6 +51,11 @@ class OutputTask(Task):
         """Whether linkages of any size perform it."""
         return self.stroke is None
 
+    @property
+    def states_length(self) -> bool:
+        """Whether the output is a stroke."""
+        return self.stroke is not None
+
     def sized(self, reference: float) -> Self:
         """The same with another length that counts as the size where the scale is free."""
         made = replace(self)  # type: ignore[type-var]

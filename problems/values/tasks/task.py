@@ -106,6 +106,11 @@ class Task(GeneratedOutput, ReadOnly, ABC):
         return False
 
     @property
+    def states_length(self) -> bool:
+        """Whether a target has a length; otherwise copies of a linkage in any scale perform the task."""
+        return bool(self.has_position.any())
+
+    @property
     def middle(self) -> FloatArray:
         """Mean of the target positions, shape (2,), length; the origin where all are free."""
         return np.nanmean(self.positions, axis=0) if self.has_position.any() else np.zeros(2)

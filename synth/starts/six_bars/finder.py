@@ -30,7 +30,7 @@ from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
 from grashof.synth.starts.thinning import thinned
 from grashof.synth.theory.burmester import Displacements
-from grashof.synth.theory.distinct import origin_of, pick_apart, signatures
+from grashof.synth.theory.distinct import pick_apart, signatures
 from grashof.synth.theory.six_bars.five_poses import six_bars_through
 from grashof.synth.theory.six_bars.link_motions import POSES
 
@@ -202,7 +202,7 @@ class SixBars(DesignFinder):
         if not made:
             return np.zeros(0, dtype=np.int64)
         score = -np.arange(len(made), dtype=np.float64)
-        return pick_apart(signatures(made, origin_of(self.scaled.problem.task)), score, APART, most)
+        return pick_apart(signatures(self.scaled.problem.task, made), score, APART, most)
 
     def _kept(self, shapes: Shapes, batch: Batch, z: ComplexArray) -> BoolArray:
         """Linkages whose curve of P does not stray between the points, (n,)."""

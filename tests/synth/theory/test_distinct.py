@@ -9,10 +9,18 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from grashof.analysis import solve_position
-from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
+from grashof.problems import FourBar, FunctionTask, InvertedSliderCrank, PathTask, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.synth.theory.distinct import DISTINCT, apart, best_first, mirrored, pick_apart, signature
+from grashof.synth.theory.distinct import (
+    DISTINCT,
+    apart,
+    best_first,
+    mirrored,
+    pick_apart,
+    signature,
+    task_signature,
+)
 
 bounded = settings(max_examples=25)
 number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
@@ -59,6 +67,34 @@ def test_numbers_that_change_their_sign_in_a_mirror(linkage: Linkage, image: Lin
     signs = np.ones(9)
     signs[[1, 3, *mirrored(linkage.mechanism)]] = -1
     np.testing.assert_allclose(signature(image), signature(linkage) * signs, atol=1e-12)
+
+
+PAIRS = FunctionTask.from_degrees([0, 20, 45, 90], [0, 12, 31, 80])
+TRAVELS = FunctionTask(PAIRS.inputs, PAIRS.outputs, travels=True)
+IN_PLACE, AT_A_TENTH = (
+    (
+        FourBar((0, 0), (1, 0), 0.5, 1.5, 1.2, (0.3, 0.1)),
+        SliderCrank((0, 0), 0.5, 1.5, 0.2, 0, (0.3, 0.1)),
+        InvertedSliderCrank((0, 0), (1, 0), 0.5, 0.2, (0.3, 0.1)),
+    ),
+    (  # turned by a right angle, too, and moved
+        FourBar((3, 4), (3, 4.1), 0.05, 0.15, 0.12, (0.03, 0.01)),
+        SliderCrank((3, 4), 0.05, 0.15, 0.02, np.pi / 2, (0.03, 0.01)),
+        InvertedSliderCrank((3, 4), (3, 4.1), 0.05, 0.02, (0.03, 0.01)),
+    ),
+)
+
+
+@pytest.mark.parametrize(("one", "copy"), list(zip(IN_PLACE, AT_A_TENTH, strict=True)))
+def test_copies_are_one_design_where_no_target_is_placed(one: Linkage, copy: Linkage) -> None:
+    turned = solve_position(copy, np.pi / 2 + np.arange(4.0)).p - copy.o2  # it is a copy
+    there = solve_position(one, np.arange(4.0)).p
+    np.testing.assert_allclose(turned, 0.1 * there[:, ::-1] * [-1, 1], atol=1e-12)
+    assert share_apart(task_signature(PAIRS, one), task_signature(PAIRS, copy)) < 1e-12
+    travels = task_signature(TRAVELS, one)  # lengths of a travel
+    np.testing.assert_allclose(travels, 10 * task_signature(TRAVELS, copy), atol=1e-12)
+    placed = PathTask([(0, 0), (1, 2), (2, 2)])
+    assert share_apart(task_signature(placed, one), task_signature(placed, copy)) > 0.5
 
 
 @pytest.mark.slow
