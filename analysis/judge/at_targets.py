@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.four_bar.instant_centres import instant_centres
-from grashof.analysis.judge.meeting.function_start import Misses
+from grashof.analysis.judge.meeting.function_start import Misses, generated_rates, senses_of
 from grashof.analysis.judge.meeting.inputs import Input
 from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
@@ -132,18 +132,18 @@ def past_toggle(linkage: Linkage, theta2: FloatArray, assembly: IntArray, k: int
 
 
 def start_limits(linkage: Linkage, task: Task, wanted: Requirements, by: Input) -> Misses | None:
-    """Excess over these limits (S,) by starts (S,) and a sense, in sizes, rad or ratios; None without any.
+    """Excess over limits (S,) by starts (S,) and a sense, in sizes, rad or ratios; None without any.
 
     Zero where they are kept; infinite where the linkage does not close.
     """
     at_pairs = _some(wanted, _AT_PAIRS, len(task))
     over_motion = _some(wanted, _OVER_MOTION, MOTION)
-    if not (wanted.at or at_pairs or over_motion):
+    if not (wanted.at or at_pairs or over_motion or task.rates is not None):
         return None
     inputs = np.linspace(*task.span, MOTION)
 
     def misses(starts: FloatArray, direction: int) -> FloatArray:
-        worst = np.zeros(len(starts))
+        worst = _of_rates(linkage, task, by, starts, direction)
         for limits, places in (
             *((limits, task.inputs) for limits in (*wanted.at, *at_pairs)),
             *((limits, inputs) for limits in over_motion),
@@ -157,6 +157,24 @@ def start_limits(linkage: Linkage, task: Task, wanted: Requirements, by: Input) 
         return np.where(worst > SLACK, worst, 0.0)
 
     return misses
+
+
+def rate_misses(limited: FloatArray, rates: FloatArray) -> FloatArray:
+    """Amounts by which leverage ratios (..., R) miss `FunctionTask.rates`, shares of the greatest limit."""
+    _, low, high = limited.T
+    greatest = np.maximum(np.abs(low), np.abs(high))
+    missed: FloatArray = np.maximum(low - rates, rates - high) / np.where(greatest > 0, greatest, 1.0)
+    return np.where(np.isnan(missed), np.inf, np.maximum(missed, 0.0))
+
+
+def _of_rates(linkage: Linkage, task: Task, by: Input, starts: FloatArray, direction: int) -> FloatArray:
+    """The worst of these misses (S,), in the better sense of the output."""
+    if task.rates is None:
+        return np.zeros(len(starts))
+    rates = generated_rates(linkage, task, by, starts, direction, task.rates[:, 0])
+    missed = [rate_misses(task.rates, sense * rates).max(axis=-1) for sense in senses_of(task)]
+    least: FloatArray = np.min(missed, axis=0)
+    return least
 
 
 def _some(wanted: Requirements, names: tuple[str, ...], count: int) -> tuple[TargetLimits, ...]:

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from grashof.analysis.judge.at_targets import start_limits
+from grashof.analysis.judge.at_targets import SLACK, rate_misses, start_limits
 from grashof.analysis.judge.meeting.function_start import (
     Beginning,
     begins,
     begins_mirrored,
+    generated_rates,
     moved_output,
-    output_rate,
+    senses_of,
     way_of,
 )
 from grashof.analysis.judge.meeting.inputs import ByAngle, ByLength, input_of
@@ -27,7 +28,6 @@ from grashof.problems.values.arrays import TURN, FloatArray
 
 _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
-RATE_SLACK = 1e-9  # share of the greatest limit
 
 
 def output_error(
@@ -52,11 +52,10 @@ def structural_error(
     or the middle of the extremes where the greatest error counts and pairs need not be met; for a mirrored
     linkage it lies in the mirrored position.
     """
-    senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
     dense = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, _DENSE)]))
     found = []
-    for sense in senses:
+    for sense in senses_of(task):
         off = output_error(linkage, task, begun, dense, sense)
         if np.isnan(off).any():
             return None
@@ -133,31 +132,21 @@ def met_as_function(
     return targets, motion, figures, tuple(_rate_defects(linkage, task, met, figures))
 
 
-def generated_rate(linkage: Linkage, task: Task, begun: Beginning, inputs: FloatArray) -> FloatArray:
-    """Leverage ratio d(output)/d(input) of a linkage at inputs (K,), with the sign of its output."""
-    by_driver = output_rate(linkage, task, begun.driver_angles(inputs))
-    turned = begun.by.rate(begun.theta2, begun.direction, inputs)
-    # Rotations of the output and of link 2 count in the sense of the driver.
-    return (begun.direction if task.travels else 1) * by_driver * turned
-
-
 def _rate_defects(
     linkage: Linkage, task: Task, begun: Beginning, figures: dict[str, Any] | None
 ) -> Iterator[Defect]:
     """Rates beyond their limits, with the miss as a share of the greatest limit."""
     if task.rates is None or figures is None:
         return
-    at, low, high = task.rates.T
-    rates = figures["output_sense"] * generated_rate(linkage, task, begun, at)
-    scale = np.maximum(np.abs(low), np.abs(high))
-    for number, rate in enumerate(rates):
-        least, most = low[number], high[number]
-        miss = (max(least - rate, rate - most) if np.isfinite(rate) else np.inf) / (scale[number] or 1.0)
-        if miss > RATE_SLACK:
-            place = f"{task.counted_from.shown * at[number]:.6g}"
-            what = f"the leverage ratio d(output)/d(input) at input {place}"
-            allowed = f"{task.rate_unit * least:.6g} to {task.rate_unit * most:.6g}"
-            yield Defect("function.rate", what, float(task.rate_unit * rate), allowed, float(miss))
+    start, limited = np.array(begun.theta2), task.rates
+    rates = generated_rates(linkage, task, begun.by, start, begun.direction, limited[:, 0])
+    rates = figures["output_sense"] * rates
+    for (at, *limits), rate, miss in zip(limited, rates, rate_misses(limited, rates), strict=True):
+        if miss > SLACK:
+            what = f"the leverage ratio d(output)/d(input) at input {task.counted_from.shown * at:.6g}"
+            low, high = (f"{task.rate_unit * limit:.6g}" for limit in limits)
+            found = float(task.rate_unit * rate)
+            yield Defect("function.rate", what, found, f"{low} to {high}", float(miss))
 
 
 def _nowhere(task: Task, start: float | None) -> Beginning:

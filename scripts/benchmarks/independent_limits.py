@@ -3,6 +3,7 @@
 The loop is closed by the elbow formula; it shares nothing with `grashof.synth`.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -46,6 +47,7 @@ class Aim:
     turned: bool  # the targets have angles
     timed: bool  # the driver rotations are prescribed
     over_turn: bool  # the transmission angle counts over the full turn
+    rates: Sequence[tuple[int, float, float]] = ()  # pairs, and the limits of d(output)/d(input) there
     potential: Any = None  # its slope is the drive torque, see `wanted_torque.Potential`
 
     @classmethod
@@ -75,7 +77,17 @@ class Aim:
             anywhere=placed or (directed and (wanted.o2, wanted.o4) != on_ground),
             turned=not np.isnan(angles).any(), timed=not np.isnan(task.driver_turns).any(),
             over_turn=task.closed or wanted.transmission_over == "cycle", potential=potential,
+            rates=rates_at_pairs(task) if function and task.rates is not None else (),
         )  # fmt: skip
+
+
+def rates_at_pairs(task: FunctionTask) -> list[tuple[int, float, float]]:
+    """Limits of the leverage ratio, with the number of the pair where each holds."""
+    number = {turned: k for k, turned in enumerate(task.inputs.tolist())}
+    rates = np.asarray(task.rates).tolist()
+    if not number.keys() >= {at for at, _, _ in rates}:
+        raise ValueError("leverage ratios between pairs are not supported here")
+    return [(number[at], low, high) for at, low, high in rates]
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +202,10 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
     for single in wanted.at:
         for number in single.targets:
             rows += at_target(at, aim, single, number - 1)
+    for k, *limits in aim.rates:
+        driver, coupler, output = (each[:, [k]] for each in (at.a - at.o2, at.b - at.a, at.b - at.o4))
+        rate = cross(coupler, driver) / (cross(coupler, output) + HAIR)
+        rows += [side * (rate - limit) + INSIDE for side, limit in zip((-1, 1), limits, strict=True)]
     rows += [*turning(aim, at), *transmission(aim, at)]
     if not aim.timed:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)

@@ -307,6 +307,22 @@ def functions(name: str, count: int, seed: int) -> Iterator[str]:
     yield summary(ratios)
 
 
+def leverages(count: int, seed: int) -> Iterator[str]:
+    """The same where the leverage ratio at a pair is limited, beyond that of the best design without."""
+    ratios = list[float]()
+    for number in range(seed, seed + count):
+        free, rng = _free_function(number), np.random.default_rng([15, number])
+        (o2, a, b), o4 = _joints(free), free.linkage.o4 @ [1, 1j]
+        rates = ((b - a).conj() * (a - o2)).imag / ((b - a).conj() * (b - o4)).imag
+        k = int(rng.integers(len(a)))
+        low = float(rates[k] + rng.uniform(0.05, 0.2))
+        task = free.problem.task
+        limited = FunctionTask(task.inputs, task.outputs, rates=[(task.inputs[k], low, low + 3)])
+        problem = Problem(task=limited, requirements=WANTED)
+        ratios.append((yield from _beside(problem, f"leverage {number}", number, **OF_FEW_UNKNOWNS)))
+    yield summary(ratios)
+
+
 @cache
 def _free_function(number: int) -> Candidate:
     """The design of least error of a random function, without further limits."""
@@ -349,6 +365,7 @@ CASES = [
         Case(f"beside an independent search: functions: {name}", 10, partial(functions, name))
         for name in (*OF_FUNCTIONS, BOXES)
     ),
+    Case("beside an independent search: functions: leverage", 10, leverages),
     Case("beside an independent search: coupler angle", 10, couplers),
     Case("known tasks", 12, partial(against_known, KNOWN, 5)),
     Case("random tasks", 60, partial(against_known, RANDOM, 1)),

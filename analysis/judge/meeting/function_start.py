@@ -68,6 +68,21 @@ def output_rate(linkage: Linkage, task: Task, theta2: FloatArray) -> FloatArray:
     return rate
 
 
+def generated_rates(
+    linkage: Linkage, task: Task, by: Input, starts: FloatArray, direction: int, inputs: FloatArray
+) -> FloatArray:
+    """Leverage ratios d(output)/d(input) by starts (...) at inputs (R,), with the sign of the output."""
+    theta2 = starts[..., None] + direction * by.turned(starts, direction, inputs)
+    rates = output_rate(linkage, task, theta2) * by.rate(starts, direction, inputs)
+    # Rotations of the output and of link 2 count in the sense of the driver.
+    return (direction if task.travels else 1) * rates
+
+
+def senses_of(task: Task) -> tuple[int, ...]:
+    """The senses in which the output may follow the function."""
+    return (1, -1) if task.sense == "either" else (1,)
+
+
 def way_of(task: Task, direction: int) -> int:
     """Sense in which an output counts: a rotation in that of the driver, a travel along the slide."""
     return 1 if task.travels else direction
@@ -165,10 +180,6 @@ class _Search:
         lowest = sorted(valley for direction in directions for valley in self.valleys(direction))
         return self.bottoms(lowest[:_VALLEYS])
 
-    @property
-    def senses(self) -> tuple[int, ...]:
-        return (1, -1) if self.task.sense == "either" else (1,)
-
     def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
         """RMS or greatest error for first angles (S,); infinite where a start is not allowed."""
         if not self.squares:
@@ -176,7 +187,7 @@ class _Search:
         task, share = self.task, self.task.weights / self.task.weights.sum()
         moved = self._moved(starts, direction, task.inputs, unwrapped=False)
         best = np.full(len(starts), np.inf)
-        for sense in self.senses:
+        for sense in senses_of(self.task):
             off = _from_first(task, moved - sense * task.outputs)
             off = off - (off @ share)[:, None]
             best = np.fmin(best, np.nan_to_num(np.sqrt(off**2 @ share), nan=np.inf))
@@ -206,7 +217,7 @@ class _Search:
             inputs, wanted = inputs[places], wanted[places]
             beside = [np.searchsorted(places, some + k) for k in range(3)]
         moved = self._moved(starts, direction, inputs, unwrapped=some is None)
-        off = [moved - sense * wanted for sense in self.senses]
+        off = [moved - sense * wanted for sense in senses_of(self.task)]
         crests = [_crest(*(sign * each[:, k] for k in beside)) for each in off for sign in (1, -1)]
         return np.stack(crests), not self.task.travels and bool((np.abs(moved) > np.pi).any())
 
@@ -321,7 +332,10 @@ class _Search:
                 break
             output = moved_output(self.task, state, direction, unwrapped=False)
             off = min(
-                (_from_first(self.task, output - sense * self.task.outputs) for sense in self.senses),
+                (
+                    _from_first(self.task, output - sense * self.task.outputs)
+                    for sense in senses_of(self.task)
+                ),
                 key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),
             )
             off, rate = off - share @ off, way * (rate - share @ rate)

@@ -22,8 +22,8 @@ class Input(ABC):
         """Rotation of link 2 in a sense from starts (...) at inputs (N,), (..., N), rad; NaN beyond reach."""
 
     @abstractmethod
-    def rate(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
-        """Derivative of that rotation by the input, shape (N,), rad for a unit of the input."""
+    def rate(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
+        """Derivative of that rotation by the input, shape (..., N), rad for a unit of the input."""
 
     @abstractmethod
     def moved_by_start(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
@@ -45,8 +45,8 @@ class ByAngle(Input):
     def turned(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
         return np.broadcast_to(inputs, (*np.shape(starts), len(inputs)))
 
-    def rate(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
-        return np.ones(len(inputs))
+    def rate(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
+        return np.ones((*np.shape(starts), len(inputs)))
 
     def moved_by_start(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
         return np.ones(len(inputs))
@@ -89,14 +89,14 @@ class ByLength(Input):
         opened = self._at(self._length(first)[..., None] + inputs) - first[..., None]
         return np.where(inputs == 0, 0.0 * first[..., None], opened)
 
-    def rate(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
-        length, opening = self._along(start, direction, inputs)
+    def rate(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
+        length, opening = self._along(starts, direction, inputs)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(length / (self.base * self.arm * np.sin(opening)))
 
     def moved_by_start(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
-        length, opening = self._along(start, direction, inputs)
         first = self._opening(np.array(start), direction)
+        length, opening = self._along(np.array(start), direction, inputs)
         with np.errstate(divide="ignore", invalid="ignore"):
             moved: FloatArray = length * np.sin(first) / (self._length(first) * np.sin(opening))
         return moved
@@ -122,9 +122,9 @@ class ByLength(Input):
         ends = sorted((self.zero, self.zero + direction * np.pi))
         return self.starts((ends[0], ends[1]), direction, span)
 
-    def _along(self, start: float, direction: int, inputs: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Lengths and openings at inputs."""
-        length = self._length(self._opening(np.array(start), direction)) + inputs
+    def _along(self, starts: FloatArray, direction: int, inputs: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Lengths and openings at inputs, (..., N)."""
+        length = self._length(self._opening(starts, direction))[..., None] + inputs
         return length, self._at(length)
 
     def _opening(self, theta2: FloatArray, direction: int) -> FloatArray:

@@ -46,6 +46,11 @@ class ShapeLimits:
         return replace(self, transmission=np.asarray(self.transmission)[index])
 
     @property
+    def single(self) -> bool:
+        """Whether limits hold at single inputs: then the best generator may be far from that without them."""
+        return self.places is not None or self.rates is not None
+
+    @property
     def most_cosine(self) -> FloatArray:
         """Greatest absolute cosine of the transmission angle, shape (1,) or (M, 1)."""
         most: FloatArray = np.cos(np.maximum(self.transmission, LEAST_ANGLE))[..., None]

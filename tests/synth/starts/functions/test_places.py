@@ -152,6 +152,18 @@ def test_designs_keep_limits_at_all_pairs_or_along_the_motion(name: str, free: C
         assert places(each).min() >= low - 1e-6
 
 
+@pytest.mark.slow
+def test_designs_keep_leverage_ratios_that_bind(free: Candidate) -> None:
+    task, k = free.problem.task, 4
+    low = float(turned(free.linkage, free.verdict.theta2[k], "output")) + 0.1
+    limited = FunctionTask(task.inputs, task.outputs, rates=[(task.inputs[k], low, low + 1)])
+    result = synthesize(problem(limited), seed=0)
+    assert len(result) > 0
+    assert min(each.verdict.square for each in result.candidates) > free.verdict.square
+    for each in result.candidates:
+        assert low - 1e-6 <= turned(each.linkage, each.verdict.theta2[k], "output") <= low + 1 + 1e-6
+
+
 CASES: dict[str, tuple[FunctionTask, str]] = {
     "output": (FunctionTask.from_degrees(*PAIRS), "four-bar"),
     "coupler": (FunctionTask.from_degrees(*PAIRS, link="coupler"), "four-bar"),
@@ -249,5 +261,12 @@ def test_the_driver_begins_where_limits_are_kept() -> None:
             assert verdict.square > free.square
         else:
             assert verdict.square == pytest.approx(free.square)
+    k, at_pair = 2, float(turned(linkage, free.theta2[2], "output"))
+    for low, ok in ((at_pair + 0.001, True), (at_pair + 5, False)):
+        limited = FunctionTask(task.inputs, task.outputs, rates=[(task.inputs[k], low, low + 1)])
+        verdict = verify(linkage, limited, FREE)
+        assert [each.requirement for each in verdict.defects] == ([] if ok else ["function.rate"])
+        if ok:
+            assert turned(linkage, verdict.theta2[k], "output") == pytest.approx(low, abs=1e-8)
     fixed = (TargetLimits(targets=[1], a=Box(x=(least, least))),)  # kept at single places between those tried
     assert verify(linkage, task, replace(FREE, at=fixed)).ok
