@@ -138,12 +138,13 @@ def start_limits(linkage: Linkage, task: Task, wanted: Requirements, by: Input) 
     """
     at_pairs = _some(wanted, _AT_PAIRS, len(task))
     over_motion = _some(wanted, _OVER_MOTION, MOTION)
-    if not (wanted.at or at_pairs or over_motion or task.rates is not None):
+    if not (wanted.at or at_pairs or over_motion or task.rates is not None or by.limited):
         return None
     inputs = np.linspace(*task.span, MOTION)
 
     def misses(starts: FloatArray, direction: int) -> FloatArray:
-        worst = _of_rates(linkage, task, by, starts, direction)
+        worst = np.maximum(by.missed(starts, direction, task), 0.0)
+        worst = np.maximum(worst, _of_rates(linkage, task, by, starts, direction))
         for limits, places in (
             *((limits, task.inputs) for limits in (*wanted.at, *at_pairs)),
             *((limits, inputs) for limits in over_motion),

@@ -18,12 +18,12 @@ from grashof.analysis.judge.meeting.function_start import (
     senses_of,
     way_of,
 )
-from grashof.analysis.judge.meeting.inputs import ByAngle, ByLength, input_of
+from grashof.analysis.judge.meeting.inputs import ByAngle, ByLength, Driven, input_of
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import Cylinder, Linkage, Requirements, Task, TransmissionOver
+from grashof.problems import Linkage, Requirements, Task, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _DENSE = 721
@@ -95,11 +95,11 @@ def structural_error(
 
 
 def met_as_function(
-    linkage: Linkage, task: Task, wanted: Requirements, cylinder: Cylinder | None
+    linkage: Linkage, task: Task, wanted: Requirements, driven: Driven
 ) -> tuple[Targets, TaskMotion, dict[str, Any] | None, tuple[Defect, ...]]:
     """Driver angle and error at each pair, the motion, and the figures of the error, or None without one.
 
-    Last, the defects of rates beyond their limits. Where the inputs are lengths of a cylinder, `cylinder`
+    Last, the defects of rates beyond their limits. Where the inputs are lengths of a cylinder, that
     drives; without one there is no motion.
     """
     exact = wanted.is_exact(task)
@@ -107,7 +107,7 @@ def met_as_function(
     senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
     limited = start is None and wanted.transmission_over is TransmissionOver.TASK
     least = float(np.radians(wanted.transmission_min_deg)) if limited else 0.0
-    by = input_of(linkage, task, cylinder)
+    by = input_of(linkage, task, driven)
     begun = None
     if by is not None:
         if task.mirror is not None:
@@ -212,7 +212,7 @@ def function_curves(
     dense = np.linspace(*task.span, max(count, _DENSE))
     inputs = np.linspace(*task.span, count) if at is None else at
     every = np.unique(np.concatenate([dense, inputs]))
-    by = input_of(linkage, task, verdict.cylinder)
+    by = input_of(linkage, task, Driven(verdict.cylinder))
     if by is None:
         return None
     begun = Beginning(float(verdict.theta2[0]), verdict.direction, by)

@@ -12,6 +12,7 @@ from grashof.analysis.curves.coupler_curve import closed_length
 from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.meeting.function_start import off_mirror
+from grashof.analysis.judge.meeting.inputs import Driven
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion, task_motions
@@ -20,7 +21,6 @@ from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import (
-    Cylinder,
     DwellTask,
     FunctionTask,
     Linkage,
@@ -34,7 +34,6 @@ from grashof.problems.values.tasks.closed_curve import spline_length
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.tandem_task import LINKS
 
-Driven: TypeAlias = Cylinder | None  # the cylinder that drives the linkage
 Members: TypeAlias = Sequence[Linkage]
 MIRRORED = 1e-9  # sizes: allowed distance of B from the mirror image of A
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
@@ -131,9 +130,9 @@ def _too_long(ratio: float, most: float) -> Defect:
     return Defect("length_ratio_max", what, ratio, f"up to {most:.6g}", miss)
 
 
-def _as_function(linkage: Linkage, task: Task, wanted: Requirements, cylinder: Driven = None) -> Met:
+def _as_function(linkage: Linkage, task: Task, wanted: Requirements, driven: Driven) -> Met:
     """The entire range counts, not only its pairs."""
-    targets, motion, figures, defects = met_as_function(linkage, task, wanted, cylinder)
+    targets, motion, figures, defects = met_as_function(linkage, task, wanted, driven)
     theta2 = np.array([motion.start, *targets.theta2, motion.end])
     assembly = np.full(len(theta2), int(linkage.assembly))
     if task.mirror is not None:
@@ -151,7 +150,7 @@ def _mirror_missed(linkage: Linkage, task: Task, targets: Targets, motion: TaskM
         yield Defect("mirror_deg", what, away, f"up to {MIRRORED * task.size:.2g}", miss)
 
 
-def _between_limits(linkage: Linkage, task: Task, wanted: Requirements, _: Driven = None) -> Met:
+def _between_limits(linkage: Linkage, task: Task, wanted: Requirements, _: Driven) -> Met:
     """The limit positions of a linkage on its own assembly, and the turn that begins with the slow stroke.
 
     A full turn apart where there are none. Clockwise where the driver's sense has to be; either has the same
@@ -202,7 +201,7 @@ def _missed_by(
         yield Defect("exact", what, value * unit, within, miss - tolerance)
 
 
-def _in_tandem(linkage: Linkage, task: TandemTask, wanted: Requirements, _: Driven = None) -> Met:
+def _in_tandem(linkage: Linkage, task: TandemTask, wanted: Requirements, _: Driven) -> Met:
     """As for one stroke, that of link 4; both swings have to be met, and the time ratios that are stated."""
     (theta2, motion), found = _slow_stroke(linkage, wanted), two_outputs(linkage, LINKS)
     assembly, defects = np.full(2, int(linkage.assembly)), tuple(_tandem_defects(found, task, wanted))
@@ -225,7 +224,7 @@ def _tandem_defects(found: TwoOutputs | None, task: TandemTask, wanted: Requirem
             yield from _missed_by(wanted.tolerance, name, ratio, wish, 1.0, wish)
 
 
-def _standing_still(linkage: Linkage, task: DwellTask, wanted: Requirements, _: Driven = None) -> Met:
+def _standing_still(linkage: Linkage, task: DwellTask, wanted: Requirements, _: Driven) -> Met:
     """The ends of the dwell of least band, and the turn that begins with it; anywhere where there is none."""
     sense = -1 if wanted.driver_sense == "cw" else 1
     slides = bool(linkage.mechanism.loops[-1].slide_angle)

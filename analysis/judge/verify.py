@@ -12,6 +12,7 @@ from grashof.analysis.judge.cylinder_drive import cylinder_defects, cylinder_tra
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
 from grashof.analysis.judge.how_met import HOW_MET, Met
 from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.meeting.inputs import Driven
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.missed_limits import SLACK, missed, stated_limits
 from grashof.analysis.judge.over_task import uncovered_loads
@@ -123,7 +124,7 @@ class Judge:
         members = [each.linkage for each in designs]
         batch = type(members[0]).stacked(members)
         how = row_of(HOW_MET, self.task)
-        met = how(members, batch, self.task, self.wanted, [each.cylinder for each in designs])
+        met = how(members, batch, self.task, self.wanted, [self._driven(each) for each in designs])
         moved = Moved.of(batch, met)
         problem = self.problem or Problem(task=self.task, mechanism=batch.mechanism.word)
         stated = stated_limits(problem, self.wanted, batch.mechanism.word)
@@ -136,6 +137,11 @@ class Judge:
                 *self._beyond(linkage, one, verdict),
             )
             yield replace(verdict, defects=defects)
+
+    def _driven(self, design: Subject) -> Driven:
+        """The cylinder of a design, with its limits."""
+        spec = None if self.problem is None else self.problem.driver
+        return Driven(design.cylinder, spec, np.radians(self.wanted.cylinder_angle_min_deg or 0.0))
 
     def _figures(self, design: Subject, met: Met, moved: Moved, row: int) -> Verdict:
         """The verdict on a linkage, without its defects."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from grashof.problems import (
     Box,
+    CylinderSpec,
     FunctionTask,
     MotionTask,
     PathTask,
@@ -25,6 +26,7 @@ from grashof.problems.values.requirements.target_limits import TargetLimits
 # Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
 HAIR = 1e-12  # added to the length of a line, which may be zero
+GREATEST = 5.0  # of logarithms of the sizes of a cylinder
 BESIDE = 5e-7  # share of a segment: how far beside it a joint may lie
 
 
@@ -48,6 +50,8 @@ class Aim:
     timed: bool  # the driver rotations are prescribed
     over_turn: bool  # the transmission angle counts over the full turn
     rates: Sequence[tuple[int, float, float]] = ()  # pairs, and the limits of d(output)/d(input) there
+    lengthening: FloatArray | None = None  # (N,): of a cylinder on the driver, whose limits follow
+    cylinder: CylinderSpec | None = None
     potential: Any = None  # its slope is the drive torque, see `wanted_torque.Potential`
 
     @classmethod
@@ -65,8 +69,8 @@ class Aim:
             angles = task.outputs  # as a body that turns with the link, wherever it is
         elif not placed or not (task.is_whole or task.only_points):
             raise ValueError("poses with free parts are not supported here")
-        if task.lengthens or task.travels:
-            raise ValueError("functions of cylinders and slides are not supported here")
+        if task.travels:
+            raise ValueError("functions of slides are not supported here")
         on_ground = Box(x=(0.0, 0.0), y=(0.0, 0.0)), Box(x=(1.0, 1.0), y=(0.0, 0.0))
         directed = any(box not in (None, Box()) for box in (wanted.o2, wanted.o4, wanted.a, wanted.b))
         directed |= any(each.a or each.b or each.coupler_angle_deg for each in wanted.at)
@@ -75,9 +79,12 @@ class Aim:
             task.angle_length / size, task.driver_turns, task.closed, wanted, placed,
             link=task.link if function else "coupler",
             anywhere=placed or (directed and (wanted.o2, wanted.o4) != on_ground),
-            turned=not np.isnan(angles).any(), timed=not np.isnan(task.driver_turns).any(),
+            turned=not np.isnan(angles).any(),
+            timed=task.lengthens or not np.isnan(task.driver_turns).any(),
             over_turn=task.closed or wanted.transmission_over == "cycle", potential=potential,
-            rates=rates_at_pairs(task) if function and task.rates is not None else (),
+            rates=rates_at_pairs(task) if isinstance(task, FunctionTask) and task.rates is not None else (),
+            lengthening=task.inputs / size if task.lengthens else None,
+            cylinder=problem.driver,
         )  # fmt: skip
 
 
@@ -154,12 +161,21 @@ def places(aim: Aim, designs: Designs) -> Places:
         coupler = 0 * coupler
     r2, r3, r4 = (np.exp(np.clip(x[:, k : k + 1], -20, 20)) for k in (4, 5, 6))
     theta2 = x[:, 10:]
-    if aim.timed:
+    if aim.lengthening is not None:
+        theta2 = x[:, 10:11] + designs.sense[:, None] * np.arccos(np.clip(opening(aim, x), -1, 1))
+    elif aim.timed:
         theta2 = theta2 + designs.sense[:, None] * aim.timing
     a = o2 + r2 * np.exp(1j * theta2)
     b = a + elbow(o4 - a, r3, r4, designs.elbow[:, None])
     p = a + coupler * (b - a) / np.abs(b - a)
     return Places(o2, o4, r2, r3, r4, coupler, x[:, 9:10], theta2, a, b, p)
+
+
+def opening(aim: Aim, x: FloatArray) -> FloatArray:
+    """Cosine of the angle at O2 between base and pivot of the cylinder at the targets, (B, N)."""
+    base, arm, closed = np.exp(np.clip(x[:, 11:14], -20, 20)).T[..., None]
+    cosine: FloatArray = (base**2 + arm**2 - (closed + aim.lengthening) ** 2) / (2 * base * arm)
+    return cosine
 
 
 def misses(aim: Aim, designs: Designs, at: Places) -> FloatArray:
@@ -202,10 +218,20 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
     for single in wanted.at:
         for number in single.targets:
             rows += at_target(at, aim, single, number - 1)
-    for k, *limits in aim.rates:
+    for k, low, high in aim.rates:
         driver, coupler, output = (each[:, [k]] for each in (at.a - at.o2, at.b - at.a, at.b - at.o4))
         rate = cross(coupler, driver) / (cross(coupler, output) + HAIR)
-        rows += [side * (rate - limit) + INSIDE for side, limit in zip((-1, 1), limits, strict=True)]
+        rows += [low - rate + INSIDE, rate - high + INSIDE]
+    if aim.lengthening is not None and aim.cylinder is not None:
+        logs = designs.x[:, 11:14]
+        base, arm, closed = np.exp(np.clip(logs, -20, 20)).T[..., None]
+        length = closed + np.linspace(0, aim.lengthening[-1], 200)
+        lever = (arm**2 + length**2 - base**2) / (2 * arm * length)  # cosine of the angle at its pivot
+        least = np.radians(wanted.cylinder_angle_min_deg or 0.0)
+        rows += [np.abs(opening(aim, designs.x)) - 1 + INSIDE, np.abs(lever) - np.cos(least) + INSIDE]
+        ratio = length[:, -1:] / closed
+        rows += [np.log(ratio / aim.cylinder.ratio_max) + INSIDE, np.abs(logs) - GREATEST]
+        rows += [*beyond(closed, aim, aim.cylinder.closed or (0.0, np.inf)), arm - at.r2]  # as the search
     rows += [*turning(aim, at), *transmission(aim, at)]
     if not aim.timed:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)

@@ -6,7 +6,8 @@ improves many random starts at once, with differences for derivatives. Sequentia
 (SLSQP of scipy) brings the best within their limits, and `grashof.analysis.judge.verify` judges them.
 
 It is a plain reference. It covers free and timed points met in order, poses with position and angle, and
-functions by the driver's angle of links that turn, but neither areas kept out nor user constraints.
+functions of links that turn, by the driver's angle or the length of a cylinder on it, but neither areas kept
+out nor user constraints.
 """
 
 from dataclasses import dataclass, replace
@@ -18,7 +19,7 @@ from independent_limits import INSIDE, NUDGE, Aim, Designs, misses, oversteps, p
 from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, verify
-from grashof.problems import FourBar, Problem
+from grashof.problems import Cylinder, FourBar, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 
 STARTS, POLISHED = 800, 40
@@ -56,6 +57,9 @@ def improved(aim: Aim, designs: Designs, weight: float, steps: int) -> tuple[Des
 def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
     """Random linkages with driver angles in order, turned, scaled and moved onto the targets."""
     sense, elbow = rng.choice([-1.0, 1.0], (2, count))
+    triangles = (
+        np.empty((count, 0)) if aim.lengthening is None else cylinders(aim.lengthening[-1], count, rng)
+    )
     x = np.zeros((count, 10 + (len(aim.points) if not aim.timed else 1)))
     r1, r2, r3, r4 = np.exp(rng.uniform(np.log(0.1), 0, (4, count)))
     x[:, 2] = r1
@@ -76,7 +80,7 @@ def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
             x[:, 2:4] = x[:, :2] + scale[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
             x[:, 4:7] += np.log(scale)[:, None]
         x[:, 10] += turn
-    designs = Designs(x, elbow, sense)
+    designs = Designs(np.concatenate([x, triangles], axis=1), elbow, sense)
     if aim.placed:
         at = places(aim, designs)
         middle = at.p.mean(axis=1, keepdims=True)
@@ -90,8 +94,19 @@ def drawn(aim: Aim, count: int, rng: np.random.Generator) -> Designs:
     if aim.turned:
         at = places(aim, designs)
         side = 1.0 if aim.placed else sense[:, None]
-        x[:, 9] = np.angle((np.exp(1j * side * aim.angles) * (at.b - at.of(aim.link)).conj()).sum(axis=1))
+        designs.x[:, 9] = np.angle(
+            (np.exp(1j * side * aim.angles) * (at.b - at.of(aim.link)).conj()).sum(axis=1)
+        )
     return designs
+
+
+def cylinders(stroke: float, count: int, rng: np.random.Generator) -> FloatArray:
+    """Logarithms (count, 3) of base, arm and closed length of cylinders that turn a driver by a stroke."""
+    closed, arm = stroke * np.exp(rng.uniform([0.5, -1.0], [2.0, 1.5], (16 * count, 2))).T
+    first = rng.uniform(0.2, 2.8, 16 * count)  # angle between base and arm
+    base = arm * np.cos(first) + np.sqrt(np.maximum(closed**2 - (arm * np.sin(first)) ** 2, 0))
+    turns = (closed > arm * np.sin(first)) & (base > 0) & (base + arm > 1.02 * (closed + stroke))
+    return np.asarray(np.log(np.column_stack([base, arm, closed])[turns][:count]))
 
 
 def penalised(aim: Aim, designs: Designs, kept: int = POLISHED) -> Designs:
@@ -151,6 +166,15 @@ def polished(aim: Aim, design: Designs, steady: bool) -> tuple[Designs, float]:
     return replace(design, x=x[None]), square(x) * unit
 
 
+def cylinder_of(aim: Aim, design: Designs) -> Cylinder | None:
+    """The cylinder of a design, with its pivot on O2A."""
+    if aim.lengthening is None:
+        return None
+    zero, base, arm = design.x[0, 10], *(aim.size * np.exp(design.x[0, 11:13]))
+    foot = linkage_of(aim, design).o2 + base * np.array([np.cos(zero), np.sin(zero)])
+    return Cylinder("driver", (float(foot[0]), float(foot[1])), (float(arm), 0.0))
+
+
 def linkage_of(aim: Aim, design: Designs) -> FourBar:
     """A design as a linkage, in lengths of the problem."""
     at = places(aim, design)
@@ -190,8 +214,8 @@ def search(
     for design, square in sorted(found, key=lambda item: item[1]):
         if square == np.inf or (best and square * aim.size**2 >= best.verdict.square):
             break
-        linkage = linkage_of(aim, design)
-        verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
+        linkage, cylinder = linkage_of(aim, design), cylinder_of(aim, design)
+        verdict = verify(linkage, problem.task, problem.requirements, problem=problem, cylinder=cylinder)
         if verdict.ok and (best is None or verdict.square < best.verdict.square):
             best = Best(linkage, verdict, float(np.sqrt(verdict.square / len(problem.task))))
     return best

@@ -8,7 +8,7 @@ those of the processor.
 
 import json
 import tomllib
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
@@ -24,6 +24,8 @@ from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_function, planted_path
 from grashof.problems import (
     Box,
+    CylinderSpec,
+    FourBar,
     FunctionTask,
     PathTask,
     Problem,
@@ -33,7 +35,7 @@ from grashof.problems import (
     TargetLimits,
 )
 from grashof.problems.files.problem_schema import problem_from
-from grashof.problems.values.arrays import ComplexArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate
 
 DATA = Path(__file__).parents[2] / "tests" / "data"
@@ -269,20 +271,16 @@ OF_FUNCTIONS = (
     "coupler at a target",
     "rate at a target",
 )
-OF_FEW_UNKNOWNS = {"starts": 400, "kept": 15}
+OF_FEW = {"starts": 400, "kept": 15}  # unknowns
 BOXES = "places, pivots in boxes"
 ON_GROUND = {"o2": _square(0.0, 0.0), "o4": _square(1.0, 0.0)}
 
 
-def beside_independent(name: str, count: int, seed: int) -> Iterator[str]:
-    """Least errors under a limit that binds, beside those of the independent search, of random paths."""
-    ratios = list[float]()
-    for number in range(seed, seed + count):
-        free = _free(number)
-        limits = LIMITS[name](free, free.problem.task.size, np.random.default_rng([12, number]))
-        problem = replace(free.problem, requirements=replace(WANTED, **limits))
-        ratios.append((yield from _beside(problem, f"{name} {number}", number)))
-    yield summary(ratios)
+def of_path(name: str, number: int) -> Problem:
+    """A random path under a limit that binds."""
+    free = _free(number)
+    limits = LIMITS[name](free, free.problem.task.size, np.random.default_rng([12, number]))
+    return replace(free.problem, requirements=replace(WANTED, **limits))
 
 
 @cache
@@ -291,36 +289,27 @@ def _free(number: int) -> Candidate:
     rng = np.random.default_rng([11, number])
     task, _ = planted_path(rng, points=9)
     noisy = PathTask(task.positions + rng.normal(0, 0.02 * task.size, task.positions.shape))
-    found = synthesize(Problem(task=noisy, requirements=WANTED), seed=0).candidates
-    return min(found, key=lambda each: each.verdict.square)
+    return _best(Problem(task=noisy, requirements=WANTED))
 
 
-def functions(name: str, count: int, seed: int) -> Iterator[str]:
-    """Least errors of functions under a limit that binds, beside those of the independent search."""
-    ratios = list[float]()
-    for number in range(seed, seed + count):
-        free = _free_function(number)
-        rng = np.random.default_rng([13, number])
-        limits = _near_ground(free, 1.0, rng) if name == BOXES else ON_GROUND | LIMITS[name](free, 1.0, rng)
-        problem = replace(free.problem, requirements=replace(WANTED, **limits))
-        ratios.append((yield from _beside(problem, f"{name} {number}", number, **OF_FEW_UNKNOWNS)))
-    yield summary(ratios)
+def of_function(name: str, number: int) -> Problem:
+    """A random function under a limit that binds."""
+    free = _free_function(number)
+    rng = np.random.default_rng([13, number])
+    limits = _near_ground(free, 1.0, rng) if name == BOXES else ON_GROUND | LIMITS[name](free, 1.0, rng)
+    return replace(free.problem, requirements=replace(WANTED, **limits))
 
 
-def leverages(count: int, seed: int) -> Iterator[str]:
-    """The same where the leverage ratio at a pair is limited, beyond that of the best design without."""
-    ratios = list[float]()
-    for number in range(seed, seed + count):
-        free, rng = _free_function(number), np.random.default_rng([15, number])
-        (o2, a, b), o4 = _joints(free), free.linkage.o4 @ [1, 1j]
-        rates = ((b - a).conj() * (a - o2)).imag / ((b - a).conj() * (b - o4)).imag
-        k = int(rng.integers(len(a)))
-        low = float(rates[k] + rng.uniform(0.05, 0.2))
-        task = free.problem.task
-        limited = FunctionTask(task.inputs, task.outputs, rates=[(task.inputs[k], low, low + 3)])
-        problem = Problem(task=limited, requirements=WANTED)
-        ratios.append((yield from _beside(problem, f"leverage {number}", number, **OF_FEW_UNKNOWNS)))
-    yield summary(ratios)
+def of_leverage(number: int) -> Problem:
+    """A random function whose leverage ratio at a pair is limited, beyond that of the best design without."""
+    free, rng = _free_function(number), np.random.default_rng([15, number])
+    (o2, a, b), o4 = _joints(free), free.linkage.o4 @ [1, 1j]
+    rates = ((b - a).conj() * (a - o2)).imag / ((b - a).conj() * (b - o4)).imag
+    k = int(rng.integers(len(a)))
+    low = float(rates[k] + rng.uniform(0.05, 0.2))
+    task = free.problem.task
+    limited = FunctionTask(task.inputs, task.outputs, rates=[(task.inputs[k], low, low + 3)])
+    return Problem(task=limited, requirements=WANTED)
 
 
 @cache
@@ -328,45 +317,73 @@ def _free_function(number: int) -> Candidate:
     """The design of least error of a random function, without further limits."""
     rng = np.random.default_rng([14, number])
     task, _, _ = planted_function(rng, 8)
-    outputs = task.outputs + rng.normal(0, 0.02 * np.ptp(task.outputs), len(task))
-    noisy = FunctionTask(task.inputs, outputs - outputs[0])
-    found = synthesize(Problem(task=noisy, requirements=WANTED), seed=0).candidates
-    return min(found, key=lambda each: each.verdict.square)
+    return _best(Problem(task=FunctionTask(task.inputs, _noisy(task.outputs, rng)), requirements=WANTED))
 
 
-def couplers(count: int, seed: int) -> Iterator[str]:
-    """Least errors of coupler angles as functions, beside those of the independent search."""
+def of_coupler(number: int) -> Problem:
+    """Coupler angles as a function."""
+    rng = np.random.default_rng([11, number])
+    task, _, _ = planted_function(rng, 8, link="coupler")
+    noisy = FunctionTask(task.inputs, _noisy(task.outputs, rng), link="coupler")
+    return Problem(task=noisy, requirements=WANTED)
+
+
+def of_cylinder(number: int) -> Problem:
+    """Twelve pairs near those of a random linkage whose driver a random cylinder turns."""
+    rng = np.random.default_rng([16, number])
+    while True:
+        base, arm, closed = rng.uniform([0.8, 0.4, 1.0], [2.5, 1.5, 3.0])
+        inputs = np.linspace(0, rng.uniform(0.25, 0.55) * closed, 12)
+        cosine = (base**2 + arm**2 - (closed + inputs) ** 2) / (2 * base * arm)
+        if np.abs(cosine).max() > 0.98:
+            continue
+        r2, r3, r4 = np.exp(rng.uniform(-1, 1, 3))
+        linkage = FourBar((0, 0), (1, 0), r2, r3, r4, assembly=rng.choice([-1, 1]))
+        state = solve_position(linkage, rng.uniform(-np.pi, np.pi) + np.arccos(cosine))
+        outputs = np.unwrap(state.theta4)
+        mu = np.abs(np.sin(state.theta4 - state.theta3))
+        if np.isfinite(outputs).all() and mu.min() > 0.25 and np.ptp(outputs) > 0.3:
+            break
+    task = FunctionTask(inputs, _noisy(outputs, rng), lengthens=True)
+    driver = CylinderSpec(on=("driver",), closed=(1.7 * inputs[-1], 3 * inputs[-1]))
+    return Problem(task=task, requirements=replace(WANTED, cylinder_angle_min_deg=20), driver=driver)
+
+
+def _noisy(outputs: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Outputs from the first on, with noise of 2 % of their range."""
+    noisy = outputs + rng.normal(0, 0.02 * np.ptp(outputs), len(outputs))
+    return np.asarray(noisy - noisy[0])
+
+
+def _best(problem: Problem) -> Candidate:
+    """The design of least error."""
+    return min(synthesize(problem, seed=0).candidates, key=lambda each: each.verdict.square)
+
+
+def beside(made: Callable[[int], Problem], effort: dict[str, int], count: int, seed: int) -> Iterator[str]:
+    """Least errors of problems beside those of the independent search."""
     ratios = list[float]()
     for number in range(seed, seed + count):
-        rng = np.random.default_rng([11, number])
-        task, _, _ = planted_function(rng, 8, link="coupler")
-        outputs = task.outputs + rng.normal(0, 0.02 * np.ptp(task.outputs), len(task))
-        noisy = FunctionTask(task.inputs, outputs - outputs[0], link="coupler")
-        problem = Problem(task=noisy, requirements=WANTED)
-        ratios.append((yield from _beside(problem, f"coupler {number}", number)))
+        problem = made(number)
+        other, seconds = timed(partial(search, problem, seed=number, **effort), process_time)
+        error, took = searched(problem, seed=0)
+        ratios.append(ratio_to(None if other is None else other.error, error, problem))
+        yield f"{number}: ours/independent {ratios[-1]:.4f}; {took:.1f} s and {seconds:.1f} s"
     yield summary(ratios)
 
 
-def _beside(problem: Problem, name: str, seed: int, **effort: int) -> Generator[str, None, float]:
-    """A line on one problem; returns the ratio of both least errors."""
-    other, seconds = timed(partial(search, problem, seed=seed, **effort), process_time)
-    error, took = searched(problem, seed=0)
-    ratio = ratio_to(None if other is None else other.error, error, problem)
-    yield f"{name}: ours/independent {ratio:.4f}; {took:.1f} s and {seconds:.1f} s"
-    return ratio
-
-
+MADE: dict[str, tuple[Callable[[int], Problem], dict[str, int]]] = {
+    **{name: (partial(of_path, name), {}) for name in LIMITS},
+    **{f"functions: {name}": (partial(of_function, name), OF_FEW) for name in (*OF_FUNCTIONS, BOXES)},
+    "functions: leverage": (of_leverage, OF_FEW),
+    "functions by cylinder": (of_cylinder, {"starts": 1600, "kept": 30}),
+    "coupler angle": (of_coupler, {}),
+}
 CASES = [
     *(
-        Case(f"beside an independent search: {name}", 10, partial(beside_independent, name))
-        for name in LIMITS
+        Case(f"beside an independent search: {name}", 10, partial(beside, *each))
+        for name, each in MADE.items()
     ),
-    *(
-        Case(f"beside an independent search: functions: {name}", 10, partial(functions, name))
-        for name in (*OF_FUNCTIONS, BOXES)
-    ),
-    Case("beside an independent search: functions: leverage", 10, leverages),
-    Case("beside an independent search: coupler angle", 10, couplers),
     Case("known tasks", 12, partial(against_known, KNOWN, 5)),
     Case("random tasks", 60, partial(against_known, RANDOM, 1)),
     Case("efforts", 72, efforts),

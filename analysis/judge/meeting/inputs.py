@@ -8,10 +8,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems import Cylinder, Linkage, Task
+from grashof.problems import Cylinder, CylinderSpec, Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 
 _ROUNDING = 1e-9  # rad, or share of the lengths: a value that misses a range by less is at its end
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """The cylinder that drives a linkage, if any, its limits, and its least lever angle, rad."""
+
+    cylinder: Cylinder | None = None
+    spec: CylinderSpec | None = None
+    lever: float = 0.0
 
 
 class Input(ABC):
@@ -28,6 +37,15 @@ class Input(ABC):
     @abstractmethod
     def moved_by_start(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
         """Derivative of the driver angle at inputs by the start, shape (N,)."""
+
+    @property
+    def limited(self) -> bool:
+        """Whether limits of the input depend on where it begins."""
+        return False
+
+    def missed(self, starts: FloatArray, direction: int, task: Task) -> FloatArray:
+        """Excess over its limits from starts (S,), sizes, ratio or rad; not positive where they are kept."""
+        return np.zeros(len(starts))
 
     @abstractmethod
     def starts(self, reach: Limits, direction: int, span: Limits) -> Sequence[Limits]:
@@ -73,16 +91,40 @@ class ByLength(Input):
     base: float
     arm: float
     zero: float
+    closed: Limits = (0.0, np.inf)
+    ratio_max: float = np.inf  # of the greatest length over the least
+    lever: float = 0.0  # rad, least angle between cylinder and arm
 
     @classmethod
-    def of(cls, linkage: Linkage, cylinder: Cylinder) -> ByLength | None:
+    def of(cls, linkage: Linkage, driven: Driven) -> ByLength | None:
         """That of a cylinder on link 2; None of any other, or of one that does not turn it."""
+        cylinder, spec = driven.cylinder, driven.spec
+        if cylinder is None:
+            return None
         o2, point = np.asarray(linkage.o2, dtype=np.float64), np.asarray(cylinder.point)
         out = np.asarray(cylinder.base) - o2
         base, arm = float(np.hypot(*out)), float(np.hypot(*point))
         if cylinder.link != 2 or not (base > 0 and arm > 0):
             return None
-        return cls(base, arm, float(np.arctan2(out[1], out[0]) - np.arctan2(point[1], point[0])))
+        zero = float(np.arctan2(out[1], out[0]) - np.arctan2(point[1], point[0]))
+        closed, ratio = (None, np.inf) if spec is None else (spec.closed, spec.ratio_max)
+        return cls(base, arm, zero, closed or (0.0, np.inf), ratio, driven.lever)
+
+    @property
+    def limited(self) -> bool:
+        return self.closed != (0.0, np.inf) or np.isfinite(self.ratio_max) or self.lever > 0
+
+    def missed(self, starts: FloatArray, direction: int, task: Task) -> FloatArray:
+        closed = self._length(self._opening(starts, direction))
+        extended, (low, high) = closed + task.span[1], self.closed
+        missed = [(low - closed) / task.size, (closed - high) / task.size]
+        missed.append(extended / closed - self.ratio_max)
+        if self.lever > 0:
+            for length in (closed, extended):
+                cosine = (self.arm**2 + length**2 - self.base**2) / (2 * self.arm * length)
+                with np.errstate(invalid="ignore"):
+                    missed.append(self.lever - np.arccos(np.abs(cosine)))
+        return np.asarray(np.nan_to_num(np.max(missed, axis=0), nan=np.inf))
 
     def turned(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
         first = self._opening(np.asarray(starts), direction)
@@ -145,8 +187,6 @@ class ByLength(Input):
         return np.where(within, np.arccos(np.clip(cosine, -1.0, 1.0)), np.nan)
 
 
-def input_of(linkage: Linkage, task: Task, cylinder: Cylinder | None) -> Input | None:
+def input_of(linkage: Linkage, task: Task, driven: Driven) -> Input | None:
     """The input that turns link 2 in a task; None where a cylinder should turn it and none does."""
-    if not task.lengthens:
-        return ByAngle()
-    return None if cylinder is None else ByLength.of(linkage, cylinder)
+    return ByLength.of(linkage, driven) if task.lengthens else ByAngle()

@@ -23,9 +23,9 @@ from grashof.synth.theory.stopping import stop_requested
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 ROUGH, ROUGH_STEPS = 13, 7  # samples of the range for the first steps of least squares, and their number
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
-STRONG = (0.1, 1.0, 10.0)  # the same where limits hold at single inputs
+STRONG = (0.1, 1.0, 10.0)  # the same where not only the shape is limited
 BASINS, TRIED, SHORT = 12, 30, 5  # starts that are refined, and those tried in few steps
-LONG = 180  # steps where limits hold at single inputs, whose valleys are narrow
+LONG = 180  # steps where not only the shape is limited: valleys are narrow
 EARLY = 12  # steps after which those that have become alike are refined no further
 # Of a quick pass: starts tried, the stride of those fitted, and their steps.
 FIRST, SPARSE, QUICK_STEPS = 3, 16, 12
@@ -73,7 +73,7 @@ class Optima:
         return found
 
     def _pulls(self, full: bool) -> tuple[float, ...]:
-        if self.limits.single:
+        if self.limits.beside:
             return STRONG
         return PULLS if full else PULLS[:1]
 
@@ -87,7 +87,7 @@ class Optima:
             found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
         batch = self.aims.made.joined(found)
         square = desired.square(desired.errors(batch))
-        if self.limits.single:
+        if self.limits.beside:
             missed = np.maximum(-self.limits.of(batch).value.min(axis=1), 0.0)
             square = np.sqrt(square / desired.weights.sum()) + missed
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
@@ -107,7 +107,7 @@ class Optima:
         if self.aims.triangle is not None:
             return driven_starts(self.aims, desired, rng, 1.0)
         near = function_starts(self.aims.kind, desired, rng, self.first)
-        if self.limits.single and self.first is None:
+        if self.limits.beside and self.first is None:
             near = near.joined([near, anywhere(self.aims.kind, desired, rng)])
         return self._placed(near)
 
@@ -179,7 +179,7 @@ def optima(
         batch = _Batch.of(some)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, SHORT), _hopeful)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, EARLY), _distinct)
-        steps = LONG if batch.aim.limits.single else STEPS
+        steps = LONG if batch.aim.limits.beside else STEPS
         batch, ends = batch.chosen(refined(batch.aim, batch.generators, steps), _best if few else _distinct)
         if batch.aim.greatest:
             ends = batch.with_extremes()

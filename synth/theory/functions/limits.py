@@ -46,9 +46,9 @@ class ShapeLimits:
         return replace(self, transmission=np.asarray(self.transmission)[index])
 
     @property
-    def single(self) -> bool:
-        """Whether limits hold at single inputs: then the best generator may be far from that without them."""
-        return self.places is not None or self.rates is not None
+    def beside(self) -> bool:
+        """Whether not only the shape is limited: then the best generator may be far from that without."""
+        return any(each is not None for each in (self.places, self.rates, self.triangle))
 
     @property
     def most_cosine(self) -> FloatArray:

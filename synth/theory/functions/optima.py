@@ -17,7 +17,10 @@ STEPS = 60
 CORRECTIONS = 2  # of a step
 PRICE = 10.0  # rad, or units of the travel: of a limit missed by one, so that missing it never pays
 _FIRST, _LEAST, _MOST = 0.1, 1e-11, 0.5  # of the trust region
-_HEAVY = 1e4  # of the slack in a step of least squares
+# Of a step of least squares: the weight of the slack, and the damping as a share of the slopes.
+_HEAVY, _DAMP = 1e4, 1e-9
+# The same and the price where places are limited; the errors do not depend on places, which are damped.
+_HEAVY_PLACED, _DAMP_PLACED, _PRICE_PLACED = 1e5, 1e-3, 1e3
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,17 +31,19 @@ class Ends:
     error: FloatArray  # (M,): root mean square or greatest error at the samples
     missed: FloatArray  # (M,): amount by which the worst limit is missed; zero where all are met
     steps: IntArray  # (M,)
+    price: float = PRICE  # of a limit missed by one
 
     def __len__(self) -> int:
         return len(self.error)
 
     def __getitem__(self, index: IntArray | BoolArray | slice) -> Ends:
-        return Ends(self.generators[index], self.error[index], self.missed[index], self.steps[index])
+        error, missed, steps = self.error[index], self.missed[index], self.steps[index]
+        return Ends(self.generators[index], error, missed, steps, self.price)
 
     @property
     def worth(self) -> FloatArray:
         """Errors with the price of missed limits, shape (M,); less is better."""
-        worth: FloatArray = self.error + PRICE * self.missed
+        worth: FloatArray = self.error + self.price * self.missed
         return worth
 
 
@@ -51,6 +56,16 @@ class Aim:
     greatest: bool = False  # the greatest error is minimised, or else the (weighted) mean square
     held: bool = False  # the first driver angle stays
     band: float = np.inf  # greatest error that is allowed at any sample
+
+    @property
+    def placed(self) -> bool:
+        """Whether steps are those of least squares under limits of places."""
+        return self.limits.places is not None and not self.greatest
+
+    @property
+    def price(self) -> float:
+        """Price of a limit missed by one, in rad or units of the travel."""
+        return _PRICE_PLACED if self.placed else PRICE
 
     def some(self, index: IntArray | BoolArray) -> Aim:
         """The aims of some of the generators."""
@@ -93,12 +108,14 @@ class Aim:
     def ends(self, batch: Generators, steps: IntArray) -> Ends:
         """Generators with their errors and misses."""
         errors = self.errors(batch)
-        return Ends(batch, self.sizes(errors), self.missed(errors, self.limits.of(batch).value), steps)
+        return Ends(
+            batch, self.sizes(errors), self.missed(errors, self.limits.of(batch).value), steps, self.price
+        )
 
     def scores(self, batch: Generators) -> tuple[FloatArray, FloatArray]:
         """The numbers (M,) that fall from step to step, infinite where the loop is open, and the errors."""
         errors = self.errors(batch)
-        score = self.sizes(errors) + PRICE * self.missed(errors, self.limits.of(batch).value)
+        score = self.sizes(errors) + self.price * self.missed(errors, self.limits.of(batch).value)
         return np.where(np.isfinite(score), score, np.inf), errors
 
 
@@ -173,7 +190,7 @@ class _Linear:
         else:
             off = self.aim.desired.centred(off)
             error = self.aim.sizes(off)
-        return moved, error + PRICE * self.aim.missed(off, self.limits + times(self.by_shape, moved))
+        return moved, error + self.aim.price * self.aim.missed(off, self.limits + times(self.by_shape, moved))
 
     def best_along(self, moved: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Shapes to which steps lead, or these brought back to the errors that they predicted; the scores.
@@ -261,11 +278,13 @@ class _Linear:
     ) -> FloatArray:
         """One of these steps, shape (K,)."""
         unknowns, root = centred.shape[1], np.sqrt(weights)
-        damp = 1e-9 * np.linalg.norm(centred * root[:, None]) * np.eye(unknowns)
+        heavy, share = _HEAVY_PLACED if self.aim.placed else _HEAVY, np.full(unknowns, _DAMP)
+        share[self.about.PLACE] = _DAMP_PLACED
+        damp = np.diag(share * np.linalg.norm(centred * root[:, None]))
         matrix = np.zeros((len(errors) + unknowns + 1, unknowns + 1))
         matrix[: len(errors), :unknowns] = centred * root[:, None]
         matrix[len(errors) : -1, :unknowns] = damp
-        matrix[-1, -1] = _HEAVY
+        matrix[-1, -1] = heavy
         side = np.zeros(len(matrix))
         side[: len(errors)] = -errors * root
         rows = np.hstack([by_shape, np.ones((len(limits), 1))])

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from grashof.analysis import driver_ranges, verify, worst_transmission
+from grashof.analysis import Verdict, driver_ranges, verify, worst_transmission
 from grashof.problems import Box, Cylinder, CylinderSpec, FourBar, FunctionTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, synthesize
@@ -114,12 +114,43 @@ def test_rates_are_quotients_of_differences(seed: int) -> None:
     linkage, jack, task = planted(seed, 401)
     slope = np.gradient(task.outputs, task.inputs)
     at = np.array([100, 300])
-    for low, high, missed in ((0.999, 1.001, 0), (1.001, 1.002, 2), (0.998, 0.999, 2)):
+    for low, high, missed in ((0.999, 1.001, 0), (3.0, 4.0, 2), (0.1, 0.2, 2)):  # missed from every start
         bands = np.sort(np.outer(slope[at], [low, high]), axis=1)
         limited = replace(task, rates=np.column_stack([task.inputs[at], bands]))
         problem = problem_of(linkage, limited, exact=False)
         verdict = verify(linkage, limited, problem.requirements, problem=problem, cylinder=jack)
         assert [each.requirement for each in verdict.defects] == ["function.rate"] * missed
+        found = [each.found / limited.rate_unit for each in verdict.defects]
+        np.testing.assert_allclose(found, slope[at[:missed]], rtol=1e-3)
+
+
+@pytest.mark.parametrize("limit", ["closed", "lever"])
+def test_the_judge_begins_where_limits_of_the_cylinder_are_kept(limit: str) -> None:
+    linkage, jack, task = planted(2, 12)
+    noisy = replace(task, outputs=task.outputs + 0.01 * np.sin(40 * task.inputs / task.inputs[-1]))
+    problem = problem_of(linkage, noisy, exact=False)
+    base, arm = abs(complex(*jack.base)), abs(complex(*jack.point))
+
+    def judged(problem: Problem) -> tuple[Verdict, float, float]:
+        """The verdict, the closed length, and the least angle between cylinder and arm at both ends, deg."""
+        made = verify(linkage, noisy, problem.requirements, problem=problem, cylinder=jack)
+        first = abs(complex(*jack.point) * np.exp(1j * made.theta2[0]) - complex(*jack.base))
+        ends = first + noisy.inputs[[0, -1]]
+        lever = np.arccos((arm**2 + ends**2 - base**2) / (2 * arm * ends))
+        return made, first, float(np.degrees(np.minimum(lever, np.pi - lever).min()))
+
+    free, first, lever = judged(problem)
+    assert free.ok
+    if limit == "closed":
+        bound = replace(problem, driver=CylinderSpec(ratio_max=1.7, closed=(1.002 * first, 2 * first)))
+    else:
+        wanted = replace(problem.requirements, cylinder_angle_min_deg=lever + 0.1)
+        bound = replace(problem, requirements=wanted)
+    kept, first_kept, lever_kept = judged(bound)
+    assert kept.defects == ()
+    assert kept.square > free.square
+    assert first_kept / first == pytest.approx(1.002, abs=1e-8) or limit != "closed"
+    assert lever_kept == pytest.approx(lever + 0.1, abs=1e-6) or limit != "lever"
 
 
 @pytest.mark.slow

@@ -23,7 +23,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
-from grashof.synth.starts.functions.optima import Optima
+from grashof.synth.starts.functions.optima import Optima, optima
 from grashof.synth.starts.functions.places import PlaceLimits
 from grashof.synth.theory.functions.starts import function_starts
 
@@ -150,6 +150,23 @@ def test_designs_keep_limits_at_all_pairs_or_along_the_motion(name: str, free: C
     assert min(each.verdict.square for each in result.candidates) > free.verdict.square
     for each in result.candidates:
         assert places(each).min() >= low - 1e-6
+
+
+@pytest.mark.slow
+def test_the_least_error_is_found_where_places_leave_little_room() -> None:
+    task = FunctionTask(
+        [0, 0.142, 1.466, 2.295, 2.848, 3.244, 3.722, 4.117],
+        [0, 0.001, 0.383, 0.639, 0.791, 0.812, 0.83, 0.777],
+    )
+    at = (
+        TargetLimits(targets=[1], a=Box(x=(0.554, np.inf))),
+        TargetLimits(targets=[8], b=Region(inside=[(0.34, 0.51), (0.9, -0.71), (1.93, 0.17)])),
+    )
+    near = {"o2": Box((-0.093, 0.093), (-0.093, 0.093)), "o4": Box((0.907, 1.093), (-0.093, 0.093))}
+    aims = FunctionAims.of(ScaledProblem.of(problem(task, **near, at=at)))
+    begun = [(each, each.starts(each.rough(np.random.default_rng(0), 1))) for each in Optima.each(aims)]
+    least = min(each.error for each in optima(begun, few=False))
+    assert least == pytest.approx(0.114399, rel=1e-3)  # by `scripts/benchmarks/independent_search.py`
 
 
 @pytest.mark.slow
