@@ -23,9 +23,9 @@ from grashof.synth.theory.stopping import stop_requested
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 ROUGH, ROUGH_STEPS = 13, 7  # samples of the range for the first steps of least squares, and their number
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
-STRONG = (0.1, 1.0, 10.0)  # the same where not only the shape is limited
+STRONG = (0.1, 1.0, 10.0)  # the same where more than the shape is limited
 BASINS, TRIED, SHORT = 12, 30, 5  # starts that are refined, and those tried in few steps
-LONG = 180  # steps where not only the shape is limited: valleys are narrow
+LONG = 180  # steps where more than the shape is limited: valleys are narrow
 EARLY = 12  # steps after which those that have become alike are refined no further
 # Of a quick pass: starts tried, the stride of those fitted, and their steps.
 FIRST, SPARSE, QUICK_STEPS = 3, 16, 12

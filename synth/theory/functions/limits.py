@@ -47,7 +47,7 @@ class ShapeLimits:
 
     @property
     def beside(self) -> bool:
-        """Whether not only the shape is limited: then the best generator may be far from that without."""
+        """Whether more than the shape is limited: the best generator may then be far from the free one."""
         return any(each is not None for each in (self.places, self.rates, self.triangle))
 
     @property
