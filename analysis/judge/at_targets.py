@@ -169,7 +169,7 @@ def rate_misses(limited: FloatArray, rates: FloatArray) -> FloatArray:
 
 
 def _of_rates(linkage: Linkage, task: Task, by: Input, starts: FloatArray, direction: int) -> FloatArray:
-    """The worst of these misses (S,), in the better sense of the output."""
+    """The worst miss of a leverage ratio by starts (S,), in the better sense of the output."""
     if task.rates is None:
         return np.zeros(len(starts))
     rates = generated_rates(linkage, task, by, starts, direction, task.rates[:, 0])

@@ -99,8 +99,8 @@ def met_as_function(
 ) -> tuple[Targets, TaskMotion, dict[str, Any] | None, tuple[Defect, ...]]:
     """Driver angle and error at each pair, the motion, and the figures of the error, or None without one.
 
-    Last, the defects of rates beyond their limits. Where the inputs are lengths of a cylinder, that
-    drives; without one there is no motion.
+    Last, the defects of rates beyond their limits. Where the inputs are lengths of a cylinder, the
+    cylinder drives; without one there is no motion.
     """
     exact = wanted.is_exact(task)
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))

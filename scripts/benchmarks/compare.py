@@ -35,7 +35,7 @@ from grashof import load, synthesize  # noqa: E402
 from grashof.analysis import verify  # noqa: E402
 from grashof.analysis.judge.planted import planted_motion, planted_path  # noqa: E402
 from grashof.problems import Linkage, Problem, Requirements, Rotatability  # noqa: E402
-from grashof.synth.theory.distinct import pick_apart, signature  # noqa: E402
+from grashof.synth.theory.distinct import pick_apart, signatures  # noqa: E402
 
 NEAR, EXACT, APART = 1.01, 1e-6, 0.05
 PACKAGES = ("grashof", "scipy", "pymoo", "fourbarhinge", "pylinkage")
@@ -93,8 +93,8 @@ def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]
     good = [linkage for (_, linkage), error in zip(found, errors, strict=True) if error <= limit]
     apart = 0
     if good:
-        signatures = np.array([signature(each, problem.task.middle) for each in good])
-        apart = len(pick_apart(signatures, -np.arange(len(good), dtype=float), APART, len(good)))
+        order = -np.arange(len(good), dtype=float)
+        apart = len(pick_apart(signatures(problem.task, good), order, APART, len(good)))
     return {
         "processor": spent, "times": [round(time, 4) for time, _ in found], "errors": errors,
         "returned": len(found), "usable": sum(map(bool, np.isfinite(errors))), "distinct": apart,

@@ -73,7 +73,7 @@ class Optima:
         return found
 
     def _pulls(self, full: bool) -> tuple[float, ...]:
-        if self.limits.beside:
+        if self.limits.beyond_shape:
             return STRONG
         return PULLS if full else PULLS[:1]
 
@@ -87,7 +87,7 @@ class Optima:
             found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
         batch = self.aims.made.joined(found)
         square = desired.square(desired.errors(batch))
-        if self.limits.beside:
+        if self.limits.beyond_shape:
             missed = np.maximum(-self.limits.of(batch).value.min(axis=1), 0.0)
             square = np.sqrt(square / desired.weights.sum()) + missed
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
@@ -107,7 +107,7 @@ class Optima:
         if self.aims.triangle is not None:
             return driven_starts(self.aims, desired, rng, 1.0)
         near = function_starts(self.aims.kind, desired, rng, self.first)
-        if self.limits.beside and self.first is None:
+        if self.limits.beyond_shape and self.first is None:
             near = near.joined([near, anywhere(self.aims.kind, desired, rng)])
         return self._placed(near)
 
@@ -179,7 +179,7 @@ def optima(
         batch = _Batch.of(some)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, SHORT), _hopeful)
         batch, _ = batch.chosen(refined(batch.aim, batch.generators, EARLY), _distinct)
-        steps = LONG if batch.aim.limits.beside else STEPS
+        steps = LONG if batch.aim.limits.beyond_shape else STEPS
         batch, ends = batch.chosen(refined(batch.aim, batch.generators, steps), _best if few else _distinct)
         if batch.aim.greatest:
             ends = batch.with_extremes()

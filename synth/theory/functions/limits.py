@@ -46,7 +46,7 @@ class ShapeLimits:
         return replace(self, transmission=np.asarray(self.transmission)[index])
 
     @property
-    def beside(self) -> bool:
+    def beyond_shape(self) -> bool:
         """Whether more than the shape is limited: the best generator may then be far from the free one."""
         return any(each is not None for each in (self.places, self.rates, self.triangle))
 
