@@ -73,7 +73,8 @@ def synthesize(
     time_limit : float, s, optional
         The search ends soon after it.
     progress : callable, optional
-        Called with a `Progress` after every batch.
+        Called with a `Progress` after every batch, and with the first design that a proof finds before
+        the search.
     stop : callable, optional
         Called often; the search ends soon after it returns True.
     record : Path, optional
@@ -140,10 +141,9 @@ def synthesize(
 def _one_kind(scaled: ScaledProblem, run: Run, stop_condition: StopCondition) -> Result:
     """The list of one kind of linkage: bounds and regions from theory, then the search."""
     with run.timed("proving"):
-        bounds = bounds_before(scaled, run.proving)
+        bounds = bounds_before(scaled, replace(run.proving, report=run.report_proven))
         if bounds is not None and bounds.none:
             return conclude(scaled, nothing_to_search(scaled, run), run, stop_condition, bounds)
-        dyads = certified_of(scaled) if bounds is None else None
         atlas, known = None, None
         with suppress(StopRequested):  # the finder has a quick pass in place of it
             atlas = None if bounds is None else atlas_of(scaled, bounds)
@@ -151,6 +151,7 @@ def _one_kind(scaled: ScaledProblem, run: Run, stop_condition: StopCondition) ->
     ledgers = searches(scaled, run, known)
     with run.timed("proving"):
         proven = bounds_after(scaled, run.proving, bounds, [each for one in ledgers for each in one.best])
+        dyads = certified_of(scaled) if bounds is None else None
     if proven is not None and proven is not bounds and proven.found is not None:
         solve([proven.found.linkage], ledgers[0], run)
     return conclude(scaled, ledgers, run, stop_condition, proven or dyads, atlas)

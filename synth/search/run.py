@@ -153,6 +153,11 @@ class Run:
         if self.progress is not None:
             self.progress(Progress(ledger.solved, ledger.starts, self.search.enough, ledger.best))
 
+    def report_proven(self, design: Candidate) -> None:
+        """Report a design that a proof finds before the search begins."""
+        if self.progress is not None:
+            self.progress(Progress(0, self.search.starts, self.search.enough, (design,)))
+
     @contextmanager
     def timed(self, stage: str) -> Iterator[None]:
         """Add the time of the block to a stage."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,6 +24,8 @@ class Proving:
     gap: float = 0.01  # deg, difference to which bounds are brought together
     most_pairs: int = 1_000_000  # budget of pairs of pieces, independent of the clock
     minutes: bool = False  # whether proofs that always take long are wanted
+    # Called with the first design that a proof finds and the judge accepts
+    report: Callable[[Candidate], object] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gap", number_within(self.gap, 1e-4, 90.0, "gap"))

@@ -33,7 +33,7 @@ def bounds_of_four(
     about = with_forms(scaled) if without else scaled
     required = Required.of(about, at_least)
     search = Search(required, float(np.radians(proving.gap)), proving.most_pairs)
-    look = Lookout(about, required)
+    look = Lookout(about, required, None if without else proving.report)
     begun = (0, 0)
     try:
         table = Table.covering(required, trail)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -33,6 +34,7 @@ class Lookout:
 
     scaled: ScaledProblem  # with the requirements that the proof is about
     required: Required
+    report: Callable[[Candidate], object] | None = None  # called with the first design
     best: Candidate | None = field(default=None)  # the best design so far
     _climbs: int = field(default=0)
 
@@ -69,6 +71,8 @@ class Lookout:
         transmitted = float(made.values[quantity_of(self.scaled.problem).key])
         if transmitted <= least:
             return 0.0
+        if self.best is None and self.report is not None:
+            self.report(made)
         self.best = made
         return transmitted
 

@@ -97,7 +97,7 @@ def bounds_of_three(
     required, without = _required(scaled, at_least)
     about = with_forms(scaled) if without else scaled
     search = BestFirst(required, float(np.radians(proving.gap)), proving.most_pairs, lower=lower)
-    look = Lookout(about, required)
+    look = Lookout(about, required, None if without else proving.report)
     begun = (0, 0)
     try:
         sides = Tilings.covering(required)

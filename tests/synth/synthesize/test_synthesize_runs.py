@@ -140,7 +140,7 @@ def test_reported_designs_of_a_stopped_search_make_a_list(luggage: Problem, tmp_
     stopped = synthesize(luggage, progress=seen.append, stop=lambda: len(seen) > 1)
     assert not stopped.complete
     designs = seen[1].designs
-    assert len(designs) > len(seen[0].designs) > 0
+    assert len(designs) > len(seen[0].designs) == 1
     assert all(verify(one.linkage, luggage.task, luggage.requirements).ok for one in designs)
     csv_of(Result(luggage, designs), tmp_path)
     assert pd.read_csv(tmp_path / "out.csv")["id"].tolist() == [one.id for one in designs]
@@ -158,7 +158,8 @@ def test_enough_is_enough(luggage: Problem) -> None:
     synthesize(luggage, enough=8, progress=seen.append)
     solved, verified = [step.solved for step in seen], [step.verified for step in seen]
     assert (solved, verified) == (sorted(set(solved)), sorted(verified))
-    assert solved[:2] == [2, 8]  # a batch does not exceed enough
+    assert solved[:3] == [0, 2, 8]  # a proof finds the first; a batch does not exceed enough
+    assert verify(seen[0].designs[0].linkage, luggage.task, luggage.requirements).ok
     assert seen[-1].solved <= 16
     assert seen[-2].verified < 8 <= seen[-1].verified
     assert seen[0].starts == luggage.search.starts > 16
