@@ -8,19 +8,21 @@ import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.theory.functions.fit import DesiredOutput
+from grashof.synth.theory.functions.least_squares import least_missed, least_square
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.linear_programmes import least_linear, times
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import raise_if_overdue
 
 STEPS = 60
-CORRECTIONS = 2  # of a step
+CORRECTIONS = 4  # of a step
 PRICE = 10.0  # rad, or units of the travel: of a limit missed by one, so that missing it never pays
 _FIRST, _LEAST, _MOST = 0.1, 1e-11, 0.5  # of the trust region
-# Of a step of least squares: the weight of the slack, and the damping as a share of the slopes.
-_HEAVY, _DAMP = 1e4, 1e-9
-# The same and the price where places are limited; the errors do not depend on places, which are damped.
-_HEAVY_PLACED, _DAMP_PLACED, _PRICE_PLACED = 1e5, 1e-3, 1e3
+_DAMP = 1e-6  # share of the slopes: damping of a step of least squares, whose errors do not depend on places
+_PRICE_PLACED = 1e3  # the price where places are limited
+_HEAVY = 1e3  # weight of the limits where a step is corrected
+_HUGE = 1e10  # rates that are those of a dead position
+_ACTIVE = 1e-9  # limits that a step is to meet within this are kept by its correction
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,19 +114,19 @@ class Aim:
             batch, self.sizes(errors), self.missed(errors, self.limits.of(batch).value), steps, self.price
         )
 
-    def scores(self, batch: Generators) -> tuple[FloatArray, FloatArray]:
-        """The numbers (M,) that fall from step to step, infinite where the loop is open, and the errors."""
-        errors = self.errors(batch)
-        score = self.sizes(errors) + self.price * self.missed(errors, self.limits.of(batch).value)
-        return np.where(np.isfinite(score), score, np.inf), errors
+    def scores(self, batch: Generators) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The numbers (M,) that fall from step to step, infinite where a loop is open, errors and limits."""
+        errors, limits = self.errors(batch), self.limits.of(batch).value
+        score = self.sizes(errors) + self.price * self.missed(errors, limits)
+        return np.where(np.isfinite(score), score, np.inf), errors, limits
 
 
 def refined(aim: Aim, starts: Generators, steps: int = STEPS) -> Ends:
     """The optimum near each start, closed at all samples; it may miss limits.
 
     Errors and limits are linearised about the best shape so far; within a trust region, there remains a
-    linear programme for the greatest error or linear least squares under inequalities for the mean square
-    (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
+    linear programme for the greatest error or linear least squares under inequalities for the mean square.
+    Starts may miss limits: for the first by a price, for the second by the least amount within the region.
     """
     shape, score = starts.shape.copy(), aim.scores(starts)[0]
     radius, flat, taken = np.full(len(starts), _FIRST), np.zeros(len(starts)), np.zeros(len(starts), int)
@@ -177,9 +179,9 @@ class _Linear:
 
     @property
     def finite(self) -> BoolArray:
-        """Whether output and limits have rates everywhere, (M,): in a dead position there are none."""
-        known = np.isfinite(self.slopes).all(axis=(1, 2)) & np.isfinite(self.by_shape).all(axis=(1, 2))
-        return np.asarray(known)
+        """Whether output and limits have rates everywhere, (M,); in a dead position these are huge."""
+        rates = np.concatenate([self.slopes, self.by_shape], axis=1)
+        return np.asarray((np.abs(rates) < _HUGE).all(axis=(1, 2)))
 
     def step(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The best steps within radii (M,), shape (M, K), and the scores predicted for them."""
@@ -193,31 +195,39 @@ class _Linear:
         return moved, error + self.aim.price * self.aim.missed(off, self.limits + times(self.by_shape, moved))
 
     def best_along(self, moved: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Shapes to which steps lead, or these brought back to the errors that they predicted; the scores.
+        """Shapes to which steps lead, or these brought back to what was predicted; the scores.
 
-        The valleys of these errors are narrow and curved: without the correction (of second order, Fletcher)
-        steps along them would have to be tiny.
+        The valleys of errors and limits are narrow and curved: without the correction (of second order,
+        Fletcher) steps along them would have to be tiny.
         """
         shape = self.about.shape + moved
-        score, errors = self.aim.scores(self.about.changed(shape))
+        score, errors, limits = self.aim.scores(self.about.changed(shape))
         best, least = shape.copy(), score.copy()
         centred = self.slopes - self.slopes.mean(axis=1, keepdims=True)
-        predicted = self.errors + times(self.slopes, moved)
+        predicted, kept = self.errors + times(self.slopes, moved), self.limits + times(self.by_shape, moved)
         scale = np.einsum("mnk,mnk->m", centred, centred)
         turned = centred.swapaxes(1, 2)
         normal = turned @ centred + 1e-8 * np.maximum(scale, 1e-280)[:, None, None] * np.eye(shape.shape[1])
-        going = np.arange(len(shape))
+        going, far = np.arange(len(shape)), np.abs(moved).max(axis=1, keepdims=True)
         for _ in range(CORRECTIONS):
             strayed = errors - predicted[going]
-            known = np.isfinite(strayed).all(axis=1)
-            going, strayed = going[known], strayed[known]
+            known = np.isfinite(strayed).all(axis=1) & np.isfinite(limits).all(axis=1)
+            going, strayed, limits = going[known], strayed[known], limits[known]
             if not going.size:
                 break
+            off = limits - np.minimum(kept[going], 0.0)
+            active = (off < 0) | (kept[going] <= _ACTIVE)
+            by_shape = _HEAVY * np.where(active[..., None], self.by_shape[going], 0.0)
+            pulled = by_shape.swapaxes(1, 2)
             side = times(turned[going], strayed - strayed.mean(axis=1, keepdims=True))
-            shape[going] -= np.linalg.solve(normal[going], side[..., None])[..., 0]
-            score, errors = self.aim.some(going).scores(self.about[going].changed(shape[going]))
+            side += times(pulled, _HEAVY * np.where(active, off, 0.0))
+            step = np.linalg.solve(normal[going] + pulled @ by_shape, side[..., None])[..., 0]
+            longest = np.abs(step).max(axis=1, keepdims=True)
+            step *= np.minimum(1.0, far[going] / np.maximum(longest, 1e-300))  # a correction is no longer
+            shape[going] -= step
+            score, errors, limits = self.aim.some(going).scores(self.about[going].changed(shape[going]))
             better = score < least[going]
-            going, errors = going[better], errors[better]
+            going, errors, limits = going[better], errors[better], limits[better]
             best[going], least[going] = shape[going], score[better]
         return best, least
 
@@ -260,76 +270,26 @@ class _Linear:
         return np.clip(found[:, :unknowns], -1.0, 1.0) * radius[:, None] * self.aim.free(self.about)
 
     def _square(self, radius: FloatArray) -> FloatArray:
-        """Least squares in the steps and the slacks, the zero eliminated, under inequalities."""
-        weights = self.aim.desired.weights / self.aim.desired.weights.sum()
-        centred = self.aim.desired.centred(self.slopes)
-        each = zip(self.errors, centred, self.limits, self.by_shape, radius.tolist(), strict=True)
-        moved = [self._least_square(weights, *one) for one in each]
-        return np.reshape(moved, (-1, self.about.UNKNOWNS)) * self.aim.free(self.about)
-
-    def _least_square(
-        self,
-        weights: FloatArray,
-        errors: FloatArray,
-        centred: FloatArray,
-        limits: FloatArray,
-        by_shape: FloatArray,
-        radius: float,
-    ) -> FloatArray:
-        """One of these steps, shape (K,)."""
-        unknowns, root = centred.shape[1], np.sqrt(weights)
-        heavy, share = _HEAVY_PLACED if self.aim.placed else _HEAVY, np.full(unknowns, _DAMP)
-        share[self.about.PLACE] = _DAMP_PLACED
-        damp = np.diag(share * np.linalg.norm(centred * root[:, None]))
-        matrix = np.zeros((len(errors) + unknowns + 1, unknowns + 1))
-        matrix[: len(errors), :unknowns] = centred * root[:, None]
-        matrix[len(errors) : -1, :unknowns] = damp
-        matrix[-1, -1] = heavy
-        side = np.zeros(len(matrix))
-        side[: len(errors)] = -errors * root
-        rows = np.hstack([by_shape, np.ones((len(limits), 1))])
-        box = np.hstack([np.vstack([np.eye(unknowns), -np.eye(unknowns)]), np.zeros((2 * unknowns, 1))])
-        slack = np.append(np.zeros(unknowns), 1.0)[None]
-        inequality = np.vstack([rows, box, slack])
-        least = np.concatenate([-limits, np.full(2 * unknowns, -radius), [0.0]])
+        """Least squares under limits that are missed by the least amount, the zero eliminated."""
+        (count, unknowns), root = (len(radius), self.about.UNKNOWNS), np.sqrt(self.aim.desired.weights)
+        root = root / np.linalg.norm(root)
+        slopes = self.aim.desired.centred(self.slopes) * radius[:, None, None]
+        rows, right = -self.by_shape * radius[:, None, None], self.limits
         if np.isfinite(self.aim.band):
-            band, one = self.aim.band, np.ones((len(centred), 1))
-            inequality = np.vstack([inequality, np.hstack([-centred, one]), np.hstack([centred, one])])
-            least = np.concatenate([least, errors - band, -errors - band])
-        found = under_inequalities(matrix, side, inequality, least)
-        return np.clip(found[:unknowns], -radius, radius)
-
-
-def under_inequalities(
-    matrix: FloatArray, side: FloatArray, rows: FloatArray, least: FloatArray
-) -> FloatArray:
-    """Least squares (n,) of ``matrix @ z - side`` under ``rows @ z >= least``; zeros where these contradict.
-
-    `matrix` (m, n) has full column rank; `rows` are (k, n). LSI as least distance, and that as non-negative
-    least squares (Lawson & Hanson, *Solving Least Squares Problems*, 1974, ch. 23).
-    """
-    from scipy.optimize import nnls  # here: few problems need it
-
-    q, r = np.linalg.qr(matrix)
-    inner = q.T @ side
-    turned = np.linalg.solve(r.T, rows.T).T
-    right = least - turned @ inner
-    size = np.maximum(np.linalg.norm(turned, axis=1), 1e-300)
-    turned, right = turned / size[:, None], right / size
-    scale = max(float(np.abs(right).max(initial=0.0)), 1e-300)
-    system = np.vstack([turned.T, right / scale])
-    target = np.zeros(len(system))
-    target[-1] = 1.0
-    try:
-        dual, _ = nnls(system, target, maxiter=30 * len(right))
-    except RuntimeError:  # it goes round in circles
-        return np.zeros(matrix.shape[1])
-    rest = system @ dual - target
-    if np.linalg.norm(rest) < 1e-12 or rest[-1] == 0:
-        return np.zeros(matrix.shape[1])
-    distance = -rest[:-1] / rest[-1] * scale
-    found: FloatArray = np.linalg.solve(r, distance + inner)
-    return found
+            rows = np.concatenate([rows, slopes, -slopes], axis=1)
+            right = np.concatenate([right, self.aim.band - self.errors, self.aim.band + self.errors], axis=1)
+        start, missed = least_missed(rows, right)
+        matrix = slopes * root[:, None]
+        damping = _DAMP * np.linalg.norm(matrix, axis=(1, 2))[:, None, None] * np.eye(unknowns)
+        matrix = np.concatenate([matrix, damping], axis=1)
+        side = np.concatenate([-self.errors * root, np.zeros((count, unknowns))], axis=1)
+        box = np.broadcast_to(
+            np.vstack([np.eye(unknowns), -np.eye(unknowns)]), (count, 2 * unknowns, unknowns)
+        )
+        rows = np.concatenate([rows, box], axis=1)
+        right = np.concatenate([right + missed[:, None], np.ones((count, 2 * unknowns))], axis=1)
+        moved = least_square(matrix, side, rows, right, start)
+        return moved.clip(-1, 1) * radius[:, None] * self.aim.free(self.about)
 
 
 def with_extremes(aim: Aim, batch: Generators, turned: FloatArray, output: FloatArray) -> Aim:

@@ -2,40 +2,14 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import linprog
 
 from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.functions.inverted import InvertedSliderCranks
 from grashof.synth.theory.functions.limits import ShapeLimits
-from grashof.synth.theory.functions.optima import Aim, refined, under_inequalities
+from grashof.synth.theory.functions.optima import Aim, refined
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.slider_crank import SliderCranks
-
-
-def test_least_squares_under_inequalities_meets_the_conditions_of_kuhn_and_tucker() -> None:
-    rng = np.random.default_rng(0)
-    for _ in range(50):
-        matrix, side = rng.normal(size=(12, 4)), rng.normal(size=12)
-        rows = rng.normal(size=(6, 4))
-        least = rows @ rng.normal(size=4) - rng.uniform(0, 1, 6)  # there is a place that meets them
-        found = under_inequalities(matrix, side, rows, least)
-        slack = rows @ found - least
-        assert slack.min() > -1e-9
-        active = slack < 1e-7
-        gradient = matrix.T @ (matrix @ found - side)
-        # The gradient is a combination of the active rows with weights of at least zero.
-        cone = linprog(np.zeros(active.sum()), A_eq=rows[active].T, b_eq=gradient) if active.any() else None
-        if cone is None:
-            assert np.abs(gradient).max() < 1e-8
-        else:
-            assert cone.status == 0
-
-
-@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-def test_it_does_not_depend_on_the_scale(scale: float) -> None:
-    found = under_inequalities(scale * np.eye(2), np.zeros(2), np.array([[1.0, 1.0]]), np.array([2.0]))
-    assert np.abs(found - 1).max() < 1e-9
 
 
 @pytest.mark.parametrize("greatest", [False, True])
