@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from pydantic import Field, Tag, ValidationInfo, field_validator
 
 from grashof.problems.files import tables
+from grashof.problems.files.named_files import region_of
 from grashof.problems.files.place_schema import Place
 from grashof.problems.files.spreadsheet import rows_of
 from grashof.problems.files.task_schema import Pair
@@ -29,6 +30,16 @@ _MOST_SIZES = 2000
 @tables.keys_of(EffortPlace, {"link": int | str, "at": Place})
 class EffortPlaceTable(tables.NestedTable):
     suggested = False
+
+    @field_validator("at", mode="before", check_fields=False)
+    @classmethod
+    def _drawn(cls, at: Any, info: ValidationInfo) -> Any:
+        """The corners in place of the name of a drawing."""
+        name, context = at.get("inside") if isinstance(at, dict) else None, info.context or {}
+        if not isinstance(name, str):
+            return at
+        unit = str(context.get("length_unit"))
+        return {**at, "inside": region_of(name, "at.inside", context.get("folder"), unit)}
 
 
 @tables.keys_of(PartSize)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from refusals import refusal
 
-from grashof.problems import LinkageSpec, load
+from grashof.problems import LinkageSpec, Region, load, load_linkage_spec
 from grashof.problems.files.effort_schema import HAVE_USUAL, usual_sizes
 from grashof.problems.files.linkage_schema import linkage_from
 from grashof.problems.files.linkage_writing import linkage_toml
@@ -75,13 +75,23 @@ def test_files_are_read_back_as_they_are_written(parts: str) -> None:
     assert problem_from(tomllib.loads(problem_toml(problem)), "test").dynamics == problem.dynamics
 
 
-def test_an_end_may_be_on_a_segment_but_not_in_a_polygon() -> None:
-    line = BETWEEN.replace("{ x = [0, 2], y = -1 }", "{ on = [[0, 0], [1, 2]] }")
-    spec = linkage(EFFORT + PART + line)
+@pytest.mark.parametrize("at", ["on = [[0, 0], [1, 2]]", "inside = [[0, 0], [1, 0], [1, 1]]"])
+def test_an_end_may_be_on_a_segment_or_in_a_polygon(at: str) -> None:
+    spec = linkage(EFFORT + PART + BETWEEN.replace("x = [0, 2], y = -1", at))
     assert linkage_from(tomllib.loads(linkage_toml(spec)), "test").dynamics == spec.dynamics
-    inside = line.replace("{ on = [[0, 0], [1, 2]] }", "{ inside = [[0, 0], [1, 0], [1, 1]] }")
-    expected = "effort.parts[0].between[0].at is a polygon; it must be a point, a box or a segment"
-    assert refusal(linkage, EFFORT + PART + inside) == expected
+
+
+def test_the_polygon_of_an_end_may_be_drawn(tmp_path: Path) -> None:
+    drawing = '<svg xmlns="http://www.w3.org/2000/svg"><path id="plate" d="M0 0 L4 0 L4 -2 Z"/></svg>'
+    (tmp_path / "lid.svg").write_text(drawing)
+    drawn = BETWEEN.replace("x = [0, 2], y = -1", 'inside = "lid.svg#plate"')
+    (tmp_path / "lid.toml").write_text(HEAD.format(unit="mm") + EFFORT + PART + drawn)
+    spec = load_linkage_spec(str(tmp_path / "lid.toml"))
+    assert spec.dynamics is not None
+    assert spec.dynamics.effort is not None
+    area = spec.dynamics.effort.parts[0].places[0].at
+    assert isinstance(area, Region)
+    assert set(area.inside or ()) == {(0.0, 0.0), (4.0, 0.0), (4.0, 2.0)}
 
 
 @pytest.mark.parametrize(
