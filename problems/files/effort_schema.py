@@ -20,10 +20,9 @@ from grashof.problems.values.dynamics import struts
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.dynamics.effort import MOST_PARTS, SQUARE, EffortSpec
 from grashof.problems.values.dynamics.struts import EffortPlace, PartSize, PartSpec
-from grashof.problems.values.errors import ProblemError, listing, shown
+from grashof.problems.values.errors import ProblemError, shown
 
 USUAL = "usual"
-HAVE_USUAL = (struts.GAS, "tension", struts.TORSION)
 _MOST_SIZES = 2000
 
 
@@ -89,10 +88,6 @@ class PartTable(_Part):
         if kind not in struts.KINDS or (name == USUAL and info.data.get("sizes") is not None):
             return ()
         if name == USUAL:
-            if kind not in HAVE_USUAL:
-                raise ProblemError(
-                    f"table is missing; there are usual sizes of {listing(HAVE_USUAL, 'and')} alone"
-                )
             return usual_sizes(kind, unit)
         if context.get("folder") is None:
             raise ProblemError(f"table is the file {name}; here it must be sizes instead")

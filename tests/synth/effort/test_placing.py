@@ -168,6 +168,13 @@ def test_two_parts_are_no_worse_than_one() -> None:
     assert excess(both, placed(both)) < 0.9 * excess(alone, placed(alone))
 
 
+def test_a_usual_compression_spring_is_placed() -> None:
+    """It balances most of the lid, which a hand carries with 30 N without it."""
+    case = case_of(PartSpec("compression", (FOOT, HEAD), usual_sizes("compression", "mm")), band=(-2.0, 2.0))
+    assert effort_figures(case_of(band=(-2.0, 2.0))).without.excess > 25
+    assert excess(case, placed(case)) < 0
+
+
 @pytest.mark.slow
 def test_the_same_seed_places_the_same() -> None:
     case = case_of(PartSpec("gas", (FOOT, HEAD), GAS[::9]), stays_deg=(5.0, 45.0))
