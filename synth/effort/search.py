@@ -6,7 +6,6 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.synth.effort.aim import INSET, Aim, Found
-from grashof.synth.quantities.convex import is_convex, piece_about
 from grashof.synth.theory import minimax
 from grashof.synth.theory.stopping import overdue
 
@@ -146,10 +145,7 @@ def _best_sizes(aim: Aim, x: FloatArray, rows: IntArray, count: int) -> list[Int
 def _polished(aim: Aim, x: FloatArray, rows: IntArray, rounds: int = _MOST) -> FloatArray:
     """Places of least greatest excess for given sizes; in polygons through convex pieces in turn."""
     for _ in range(_PIECES):
-        pieces = [
-            (first, piece_about(region, complex(*x[first : first + 2]), len(region.corners)))
-            for first, region in aim.polygons
-        ]
+        pieces, whole = _pieces(aim, x)
 
         def values(z: FloatArray, pieces: Pieces = pieces) -> tuple[FloatArray, FloatArray]:
             found = aim.at(z, np.broadcast_to(rows, (len(z), len(rows))))
@@ -159,7 +155,20 @@ def _polished(aim: Aim, x: FloatArray, rows: IntArray, rounds: int = _MOST) -> F
             return np.where(np.isfinite(excess), excess, -1e3), margins
 
         before, x = x, aim.inside(minimax.by_linear(values, x, np.zeros(len(x)), np.ones(len(x)), rounds))
-        convex = all(is_convex(region) for _, region in aim.polygons)
-        if convex or np.abs(x - before).max() < _STILL:
+        if whole or np.abs(x - before).max() < _STILL:
             break
     return x
+
+
+def _pieces(aim: Aim, x: FloatArray) -> tuple[Pieces, bool]:
+    """Half-planes of the convex pieces about ends in polygons; and whether these are the entire polygons."""
+    if not aim.polygons:
+        return [], True
+    # Here, not above: shapely takes a while to import, and few struts have polygons.
+    from grashof.synth.quantities.convex import is_convex, piece_about
+
+    found = [
+        (first, piece_about(region, complex(x[first], x[first + 1]), len(region.corners)))
+        for first, region in aim.polygons
+    ]
+    return found, all(is_convex(region) for _, region in aim.polygons)
