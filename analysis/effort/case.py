@@ -21,7 +21,7 @@ from grashof.problems.values.arrays import FloatArray, turned_from
 from grashof.problems.values.dynamics.effort import SQUARE, EffortSpec
 
 _AT_REST = 1e-12  # share of the greatest speed of the point: no motion
-_HALVINGS = 60
+_PIECES, _NARROWINGS = 64, 10  # in which a place is sought, each time in the piece that has it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,6 +37,8 @@ class EffortState:
         moves perpendicular to a given direction.
     effort : ndarray, shape (T, N), N
         The effort with struts and springs, at each temperature, without friction.
+    per : ndarray, shape (N,), N
+        The effort for a unit of power, force in N times a rate, that struts and springs take.
     friction : ndarray, shape (N,), N
         Moving on takes the effort plus friction, moving back the effort minus friction.
     sense : ndarray, shape (N,)
@@ -47,6 +49,7 @@ class EffortState:
     angle_deg: FloatArray
     without: FloatArray
     effort: FloatArray
+    per: FloatArray
     friction: FloatArray
     sense: FloatArray
     parts: tuple[PartState, ...]
@@ -129,12 +132,10 @@ class EffortCase:
             return low
         if angle_deg >= self.total_deg:
             return high
-        for _ in range(_HALVINGS):
-            middle = (low + high) / 2
-            if self.angle_deg([middle])[0] < angle_deg:
-                low = middle
-            else:
-                high = middle
+        for _ in range(_NARROWINGS):
+            within = np.linspace(low, high, _PIECES + 1)
+            piece = int(np.count_nonzero(self.angle_deg(within[1:-1]) < angle_deg))
+            low, high = float(within[piece]), float(within[piece + 1])
         return (low + high) / 2
 
     def _direction(self, places: FloatArray) -> FloatArray:
@@ -196,6 +197,7 @@ class EffortCase:
                 self.angle_deg(places),
                 -given * per,
                 -(given + gained) * per,
+                per,
                 taken * np.abs(per),
                 np.where(along < 0, -1.0, 1.0),
                 parts,

@@ -157,8 +157,13 @@ def _beyond_travel(case: EffortCase) -> Iterator[Miss]:
 
 
 def effort_curves(case: EffortCase, count: int = 181) -> tuple[FloatArray, EffortState]:
-    """Places from the start of the travel to its end, closer together towards both, and the state there."""
+    """Places from the start of the travel to its end, and the state there."""
+    places = even_places(case, count)
+    return places, case.at(places)
+
+
+def even_places(case: EffortCase, count: int) -> FloatArray:
+    """Places from the start of the travel to its end, closer together towards both."""
     travel: Travel = case.travel
     share = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
-    places = travel.start + (travel.end - travel.start) * share
-    return places, case.at(places)
+    return np.asarray(travel.start + (travel.end - travel.start) * share)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -9,11 +10,14 @@ import numpy as np
 from grashof.analysis.cylinder.travel import travel
 from grashof.analysis.effort.case import EffortCase
 from grashof.analysis.effort.deviation import effort_figures
+from grashof.analysis.effort.parts import place_on
 from grashof.analysis.judge.over_task import motion_ends
+from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.problems import Linkage, Problem
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.effort import EffortSpec
+from grashof.problems.values.dynamics.struts import BODY, EffortPlace
 
 
 def effort_of_design(
@@ -34,9 +38,32 @@ def effort_of_design(
     return EffortCase(linkage, given, metres(problem.length_unit), moved)
 
 
-def effort_defects(case: EffortCase) -> list[Defect]:
-    """Strokes that end inside the travel, and angles of the effort beyond it."""
-    return [Defect(*miss) for miss in effort_figures(case).misses]
+def effort_defects(case: EffortCase, problem: Problem) -> list[Defect]:
+    """Strokes that end inside the travel, angles of the effort beyond it, and ends outside their areas."""
+    found = [Defect(*miss) for miss in effort_figures(case).misses]
+    asked = None if problem.dynamics is None else problem.dynamics.effort
+    areas = () if asked is None else asked.parts
+    for index, (part, area) in enumerate(zip(case.spec.parts, areas, strict=False)):
+        for end, pair in enumerate(zip(part.places, area.places, strict=False)):
+            key = f"effort.parts[{index}].between[{end}]"
+            found += _outside(key, case.linkage, *pair, problem.task.size)
+    return found
+
+
+def _outside(
+    key: str, linkage: Linkage, place: EffortPlace, area: EffortPlace, size: float
+) -> Iterator[Defect]:
+    """A defect of an end on another link than its area, or outside the area; both may be on the body."""
+    (link, point), (carrier, _) = place_on(linkage, place), place_on(linkage, area)
+    if link != carrier:
+        yield Defect(f"{key}.link", "the link of the end", link, str(carrier), 1.0)
+        return
+    at = complex(*point)
+    if area.link == BODY:
+        at = (at - complex(*linkage.coupler_point)) * np.exp(-1j * float(linkage.body_angle))
+    away = float(distances(area.at, np.array(at.real), np.array(at.imag)))
+    if away > slack_of(area.at) * size:
+        yield Defect(f"{key}.at", "the distance of the end from its area", away, "0", away / size)
 
 
 def effort_deviation(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:

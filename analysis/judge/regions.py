@@ -1,4 +1,4 @@
-"""Distances of joints from the regions in which they have to lie."""
+"""Distances of joints, and ends of struts, from the regions in which they have to lie."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from grashof.analysis.judge.verdict import Defect
-from grashof.problems import Problem, Region
+from grashof.problems import Box, Problem, Region
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements.limit_kinds import Limit
 from grashof.problems.values.requirements.quantities import Scope
@@ -16,13 +16,16 @@ from grashof.problems.values.requirements.quantities import Scope
 INSIDE, ON = 1e-9, 1e-6
 
 
-def distances(region: Region, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Distances of places (n,) from a region, zero inside and on its boundary; NaN for a place that is NaN.
+def distances(region: Box, x: FloatArray, y: FloatArray) -> FloatArray:
+    """Distances of places (n,) from a box or region, zero inside and on its boundary; NaN for a NaN place.
 
     >>> triangle = Region(inside=[[0, 0], [4, 0], [0, 4]])
     >>> distances(triangle, np.array([1.0, 2.0, 5.0]), np.array([1.0, 2.0, 0.0])).tolist()
     [0.0, 0.0, 1.0]
     """
+    if not isinstance(region, Region):
+        sides = zip((x, y), (region.x, region.y), strict=True)
+        return np.hypot(*(np.maximum(0.0, np.maximum(low - at, at - high)) for at, (low, high) in sides))
     # Here, not above: shapely takes a while to import, and few problems have regions.
     import shapely
 
@@ -34,9 +37,9 @@ def distances(region: Region, x: FloatArray, y: FloatArray) -> FloatArray:
     return np.where(np.isfinite(x) & np.isfinite(y), found, np.nan)
 
 
-def slack_of(region: Region) -> float:
+def slack_of(region: Box) -> float:
     """Distance, in sizes, that rounding may leave between a joint and its region."""
-    return INSIDE if region.on is None else ON
+    return ON if isinstance(region, Region) and region.on is not None else INSIDE
 
 
 def defects_outside(

@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from pydantic import Field, Tag, ValidationInfo, field_validator
 
 from grashof.problems.files import tables
+from grashof.problems.files.named_files import region_of
 from grashof.problems.files.place_schema import Place
 from grashof.problems.files.spreadsheet import rows_of
 from grashof.problems.files.task_schema import Pair
@@ -19,16 +20,25 @@ from grashof.problems.values.dynamics import struts
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.dynamics.effort import MOST_PARTS, SQUARE, EffortSpec
 from grashof.problems.values.dynamics.struts import EffortPlace, PartSize, PartSpec
-from grashof.problems.values.errors import ProblemError, listing, shown
+from grashof.problems.values.errors import ProblemError, shown
 
 USUAL = "usual"
-HAVE_USUAL = (struts.GAS, "tension", struts.TORSION)
 _MOST_SIZES = 2000
 
 
 @tables.keys_of(EffortPlace, {"link": int | str, "at": Place})
 class EffortPlaceTable(tables.NestedTable):
     suggested = False
+
+    @field_validator("at", mode="before", check_fields=False)
+    @classmethod
+    def _drawn(cls, at: Any, info: ValidationInfo) -> Any:
+        """The corners in place of the name of a drawing."""
+        name, context = at.get("inside") if isinstance(at, dict) else None, info.context or {}
+        if not isinstance(name, str):
+            return at
+        unit = str(context.get("length_unit"))
+        return {**at, "inside": region_of(name, "at.inside", context.get("folder"), unit)}
 
 
 @tables.keys_of(PartSize)
@@ -78,10 +88,6 @@ class PartTable(_Part):
         if kind not in struts.KINDS or (name == USUAL and info.data.get("sizes") is not None):
             return ()
         if name == USUAL:
-            if kind not in HAVE_USUAL:
-                raise ProblemError(
-                    f"table is missing; there are usual sizes of {listing(HAVE_USUAL, 'and')} alone"
-                )
             return usual_sizes(kind, unit)
         if context.get("folder") is None:
             raise ProblemError(f"table is the file {name}; here it must be sizes instead")

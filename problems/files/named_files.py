@@ -159,18 +159,19 @@ def _path_points(name: str, folder: Path, unit: str, stated: Mapping[str, Any]) 
     return {**keys, "closed": closed, "count": None}
 
 
-def _body(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
+def _only_area(name: str, folder: Path, unit: str, noun: str) -> list[list[float]]:
     areas = areas_of(name, folder, unit)
     if len(areas) > 1:
-        raise ProblemError(f"{name}: has {len(areas)} closed lines; a body must be one")
-    return {"body": areas[0]}
+        raise ProblemError(f"{name}: has {len(areas)} closed lines; a {noun} must be one")
+    return areas[0]
+
+
+def _body(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
+    return {"body": _only_area(name, folder, unit, "body")}
 
 
 def _inside(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
-    areas = areas_of(name, folder, unit)
-    if len(areas) > 1:
-        raise ProblemError(f"{name}: has {len(areas)} closed lines; a region must be one")
-    return {"inside": areas[0]}
+    return {"inside": _only_area(name, folder, unit, "region")}
 
 
 def _areas(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
@@ -211,14 +212,10 @@ def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
         if not isinstance(name, str) or not isinstance(stated, dict):
             continue
         with noted(wrong):
-            if _ending(name) not in endings:
-                raise ProblemError(
-                    f"{where} is {shown(name)}; it must be a list, or a file {listing(endings)}"
-                )
-            if folder is None:
-                raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
+            _refuse_others(name, where, endings)
+            known = _folder(name, where, folder)
             with located_in(where):
-                keys = read(name, folder, unit if isinstance(unit, str) else "", stated)
+                keys = read(name, known, unit if isinstance(unit, str) else "", stated)
                 for other in keys.keys() & stated.keys() - {key}:
                     if keys[other] not in (None, stated[other]):
                         raise ProblemError(f"{name} has {other}, which is given besides; give one of them")
@@ -226,6 +223,25 @@ def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
             found = _with_table(found, table.split("."), given)
     refuse(wrong)
     return found
+
+
+def region_of(name: str, where: str, folder: Path | None, length_unit: str) -> list[list[float]]:
+    """Corners of the only closed line of a drawing, which a key names; parameters as for `areas_of`."""
+    _refuse_others(name, where, DRAWINGS)
+    known = _folder(name, where, folder)
+    with located_in(where):
+        return _only_area(name, known, length_unit, "region")
+
+
+def _refuse_others(name: str, where: str, endings: tuple[str, ...]) -> None:
+    if _ending(name) not in endings:
+        raise ProblemError(f"{where} is {shown(name)}; it must be a list, or a file {listing(endings)}")
+
+
+def _folder(name: str, where: str, folder: Path | None) -> Path:
+    if folder is None:
+        raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
+    return folder
 
 
 def _inner(table: Any, key: str) -> Any:

@@ -85,13 +85,12 @@ def _tables(problem: Problem) -> Tables:
 def dynamics_tables(spec: DynamicsSpec, length_unit: str) -> Iterator[tuple[str, Any]]:
     """The tables of dynamics; usual sizes of parts, which files have by default, are left out."""
     # Here, not above: worker processes import this module, and need not pay for pydantic.
-    from grashof.problems.files.effort_schema import HAVE_USUAL, usual_sizes
+    from grashof.problems.files.effort_schema import usual_sizes
 
     for name, table in spec.tables.items():
         if name == "effort":
             for part in table.get("parts", []):
-                usual = usual_sizes(part["kind"], length_unit) if part["kind"] in HAVE_USUAL else ()
-                if part["sizes"] == [size.stated for size in usual]:
+                if part["sizes"] == [size.stated for size in usual_sizes(part["kind"], length_unit)]:
                     del part["sizes"]
         yield name, table
 

@@ -6,13 +6,14 @@ sizes by differential evolution. Both values are the judge's. A case fails where
 `place_parts` exceeds 1.05 times that of the other; where limits are kept, margins are compared.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from time import process_time
 from typing import Any
 
 import numpy as np
+import shapely
 from independent_limits import elbow
 from measuring import Case
 
@@ -20,7 +21,7 @@ from grashof import load, synthesize
 from grashof.analysis.effort.case import EffortCase
 from grashof.analysis.effort.deviation import effort_figures
 from grashof.analysis.judge.effort_travel import effort_of_design
-from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatability
+from grashof.problems import Box, MotionTask, Problem, Region, Requirements, Rotatability
 from grashof.problems.files.effort_schema import usual_sizes
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
@@ -64,6 +65,26 @@ def bonnet() -> Problem:
     )
 
 
+# Corners of polygons in shares of the box around them, of the fixed end and of the moving one.
+SLANTED = [(0.0, 0.3), (0.7, 0.0), (1.0, 0.4), (0.4, 1.0)]
+NOTCHED = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.6), (0.6, 0.2), (0.3, 1.0), (0.0, 0.8)]
+
+
+def in_polygons(of: Callable[[], Problem]) -> Problem:
+    """The same with a polygon in the box of each end, one of them concave."""
+    problem = of()
+    dynamics = problem.dynamics
+    if dynamics is None or dynamics.effort is None:
+        return problem
+    (part,) = dynamics.effort.parts
+    first, second = (
+        replace(place, at=Region(inside=places_in(place.at, np.array(corners)).tolist()))
+        for place, corners in zip(part.places, (SLANTED, NOTCHED), strict=True)
+    )
+    effort = replace(dynamics.effort, parts=(replace(part, between=(first, second)),))
+    return replace(problem, dynamics=replace(dynamics, effort=effort))
+
+
 @dataclass(frozen=True, slots=True)
 class Moves:
     """A four-bar in steps of its travel: middles of links 1 and of the body in N places."""
@@ -101,9 +122,8 @@ def deviations(moved: Moves, spec: EffortSpec, x: FloatArray, rows: IntArray) ->
     """The greatest excess of candidates (K, 4) of sizes (K,), N; strokes that end inside cost much."""
     (part,) = spec.parts
     ends: list[Any] = []
-    for place, s, t in zip(part.places, x[:, ::2].T, x[:, 1::2].T, strict=True):
-        (left, right), (low, high) = place.at.x, place.at.y
-        at = left + (right - left) * s + 1j * (low + (high - low) * t)
+    for place, shares in zip(part.places, (x[:, :2], x[:, 2:]), strict=True):
+        at = places_in(place.at, shares) @ np.array([1, 1j])
         ends.append(at[:, None] if place.link == 1 else moved.origin + at[:, None] * moved.axis)
     length = np.abs(ends[1] - ends[0])
     sizes = np.array(
@@ -120,6 +140,20 @@ def deviations(moved: Moves, spec: EffortSpec, x: FloatArray, rows: IntArray) ->
             worst = np.maximum(worst, over.max(axis=1, initial=-np.inf))
     past = np.maximum(length.max(axis=1) - extended[:, 0], compressed[:, 0] - length.min(axis=1))
     return np.where(past > 0, 1e3 + past, worst)
+
+
+def places_in(area: Box, shares: FloatArray) -> FloatArray:
+    """Places (K, 2) by their shares of the box around an area; those outside moved to its boundary."""
+    low, high = np.array([area.x, area.y]).T
+    at: FloatArray = low + (high - low) * shares
+    if isinstance(area, Region):
+        polygon, points = shapely.Polygon(area.corners), shapely.points(at)
+        line = shapely.boundary(polygon)
+        border: Any = shapely.line_interpolate_point(line, shapely.line_locate_point(line, points))
+        at = np.where(
+            np.reshape(shapely.covers(polygon, points), (-1, 1)), at, shapely.get_coordinates(border)
+        )
+    return at
 
 
 def excesses(
@@ -182,11 +216,11 @@ def compared(of: Any, count: int, seed: int) -> Iterator[str]:
         mine = np.inf if found is None else judged(case, found)
         x, row = evolved(moves(problem, case), case.spec, TIMES * seconds, np.random.default_rng(seed))
         (part,) = case.spec.parts
-        ends = []
-        for place, s, t in zip(part.places, x[::2], x[1::2], strict=True):
-            (left, right), (low, high) = place.at.x, place.at.y
-            ends.append(place.placed(left + (right - left) * s, low + (high - low) * t))
-        other = replace(part, sizes=(part.sizes[row],), between=(ends[0], ends[1]))
+        first, second = (
+            place.placed(*places_in(place.at, shares[None])[0].tolist())
+            for place, shares in zip(part.places, (x[:2], x[2:]), strict=True)
+        )
+        other = replace(part, sizes=(part.sizes[row],), between=(first, second))
         theirs = judged(case, replace(case.spec, parts=(other,)))
         sound = mine <= theirs + 0.05 * abs(theirs)
         yield (
@@ -195,11 +229,15 @@ def compared(of: Any, count: int, seed: int) -> Iterator[str]:
         )
 
 
+TASKS: dict[str, Callable[[], Problem]] = {
+    "trunk lid": partial(load, "trunk-lid-struts"),
+    "bonnet": bonnet,
+    "kitchen flap": partial(load, "kitchen-flap"),
+}
 CASES = [
-    Case(name, DESIGNS, partial(compared, of))
-    for name, of in (
-        ("trunk lid", partial(load, "trunk-lid-struts")),
-        ("bonnet", bonnet),
-        ("kitchen flap", partial(load, "kitchen-flap")),
-    )
+    *(Case(name, DESIGNS, partial(compared, of)) for name, of in TASKS.items()),
+    *(
+        Case(f"{name} in polygons", DESIGNS, partial(compared, partial(in_polygons, of)))
+        for name, of in TASKS.items()
+    ),
 ]

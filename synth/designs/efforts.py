@@ -39,7 +39,7 @@ def with_parts(candidate: Candidate, known: Sequence[PartSpec] = ()) -> Candidat
     effort = replace(case.spec, parts=tuple(known)) if given else placed(case)
     if effort is None:
         return candidate
-    defects = effort_defects(replace(case, dynamics=replace(case.dynamics, effort=effort)))
+    defects = effort_defects(replace(case, dynamics=replace(case.dynamics, effort=effort)), problem)
     if given:
         return replace(
             candidate, verdict=replace(verdict, effort=effort, defects=(*verdict.defects, *defects))

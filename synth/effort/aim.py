@@ -10,9 +10,10 @@ import numpy as np
 
 from grashof.analysis.effort.case import EffortCase
 from grashof.analysis.effort.parts import place_on
-from grashof.problems import Linkage
+from grashof.problems import Linkage, Region
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, turned_from
 from grashof.problems.values.dynamics.struts import BODY, EffortPlace, PartSpec
+from grashof.synth.quantities.regions import nearest
 
 _ABOUT_STROKES = 49  # samples of the travel at which strokes are checked
 INSET = 1e-5  # share of a stroke by which it is tightened, so that the judge finds it kept
@@ -29,22 +30,30 @@ class Frame(NamedTuple):
 
 
 class Area(NamedTuple):
-    """The places of an end in the frame of a link: corner + s along + t across, s and t in [0, 1]."""
+    """The places of an end in the frame of a link: corner + s along + t across, s and t in [0, 1].
+
+    Those in a polygon are in a region of the plane of s and t.
+    """
 
     link: int
     corner: complex
     along: complex
     across: complex
+    region: Region | None = None
 
     @classmethod
     def of(cls, linkage: Linkage, place: EffortPlace) -> Area:
         """The area of a place; that of the guided body is turned and moved onto the link that carries it."""
         corner, along, across = place.spanned
+        region = None
+        if isinstance(place.at, Region) and place.at.inside is not None:
+            shares = (place.at.corners - [corner.real, corner.imag]) / [along.real, across.imag]
+            region = Region(inside=shares.tolist())
         if place.link != BODY:
-            return cls(int(place.link), corner, along, across)
+            return cls(int(place.link), corner, along, across, region)
         turned = np.exp(1j * float(linkage.body_angle))
-        moved = complex(*linkage.coupler_point)
-        return cls(linkage.mechanism.carries, moved + turned * corner, turned * along, turned * across)
+        corner = complex(*linkage.coupler_point) + turned * corner
+        return cls(linkage.mechanism.carries, corner, turned * along, turned * across, region)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,6 +139,24 @@ class Aim:
     def unknowns(self) -> int:
         """The number of unknowns of all parts, each from 0 to 1."""
         return sum(part.unknowns for part in self.parts)
+
+    @property
+    def polygons(self) -> list[tuple[int, Region]]:
+        """Polygons in which ends lie, each with the number of the first of its two unknowns."""
+        first, found = 0, []
+        for part in self.parts:
+            regions = [(first + 2 * end, area.region) for end, area in enumerate(part.ends)]
+            found += [(at, region) for at, region in regions if region is not None]
+            first += part.unknowns
+        return found
+
+    def inside(self, x: FloatArray) -> FloatArray:
+        """Unknowns (..., n) with the ends outside their polygons moved to the nearest places in them."""
+        found = x.copy()
+        for first, region in self.polygons:
+            place = nearest(region, x[..., first] + 1j * x[..., first + 1])
+            found[..., first], found[..., first + 1] = place.real, place.imag
+        return found
 
     def thinned(self, step: int) -> Aim:
         """The same at every `step`-th sample."""

@@ -18,7 +18,10 @@ _COARSE = 3  # steps between samples that suffice to compare
 _FINISHED, _BESIDE = 3, 2  # candidates continued by linear programmes, with sizes tried again after each
 _MOST, _TRIED = 40, 5  # linear programmes in a row, and their number for comparing sizes
 _BLOCK = 2000
+_PIECES, _STILL = 3, 1e-6  # convex pieces of polygons one after the other, and shares that justify no other
 _GAIN = 1e-6  # share of the scale: least gain that justifies another programme
+
+Pieces = list[tuple[int, FloatArray]]
 
 
 def best_by_search(aim: Aim, seed: int) -> tuple[FloatArray, IntArray] | None:
@@ -44,7 +47,7 @@ def best_by_search(aim: Aim, seed: int) -> tuple[FloatArray, IntArray] | None:
 
 def _drawn(aim: Aim, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
     """Random places, and for each part sizes whose strokes suit them best, with any force."""
-    x = np.repeat(rng.random((_DRAWN * len(aim.parts), aim.unknowns)), _SIZES, axis=0)
+    x = np.repeat(aim.inside(rng.random((_DRAWN * len(aim.parts), aim.unknowns))), _SIZES, axis=0)
     rows = np.empty((len(x), len(aim.parts)), dtype=np.intp)
     for number, part in enumerate(aim.parts):
         length, _ = aim.lengths(number, x[::_SIZES])
@@ -75,7 +78,7 @@ def _closed_in(
     for _ in range(_ROUNDS):
         shape = (len(x), _CHILDREN, x.shape[1])
         moved = rng.random(shape) < rng.random((*shape[:2], 1))
-        tried = np.clip(x[:, None] + step * moved * rng.standard_normal(shape), 0, 1)
+        tried = aim.inside(np.clip(x[:, None] + step * moved * rng.standard_normal(shape), 0, 1))
         sizes = np.repeat(rows[:, None], _CHILDREN, axis=1)
         beside = np.rint(3 * rng.standard_normal(sizes.shape)).astype(np.intp)
         anew = np.stack([rng.integers(count, size=shape[:2]) for count in counts], axis=-1)
@@ -140,11 +143,32 @@ def _best_sizes(aim: Aim, x: FloatArray, rows: IntArray, count: int) -> list[Int
 
 
 def _polished(aim: Aim, x: FloatArray, rows: IntArray, rounds: int = _MOST) -> FloatArray:
-    """Places of least greatest excess for given sizes."""
+    """Places of least greatest excess for given sizes; in polygons through convex pieces in turn."""
+    for _ in range(_PIECES):
+        pieces, whole = _pieces(aim, x)
 
-    def values(z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        found = aim.at(z, np.broadcast_to(rows, (len(z), len(rows))))
-        excess = found.excess / aim.scale
-        return np.where(np.isfinite(excess), excess, -1e3), found.margins.reshape(len(z), -1)
+        def values(z: FloatArray, pieces: Pieces = pieces) -> tuple[FloatArray, FloatArray]:
+            found = aim.at(z, np.broadcast_to(rows, (len(z), len(rows))))
+            excess = found.excess / aim.scale
+            inside = [z[:, k : k + 2] @ planes[:, :2].T - planes[:, 2] for k, planes in pieces]
+            margins = np.concatenate([found.margins.reshape(len(z), -1), *inside], axis=1)
+            return np.where(np.isfinite(excess), excess, -1e3), margins
 
-    return minimax.by_linear(values, x, np.zeros(len(x)), np.ones(len(x)), rounds)
+        before, x = x, aim.inside(minimax.by_linear(values, x, np.zeros(len(x)), np.ones(len(x)), rounds))
+        if whole or np.abs(x - before).max() < _STILL:
+            break
+    return x
+
+
+def _pieces(aim: Aim, x: FloatArray) -> tuple[Pieces, bool]:
+    """Half-planes of the convex pieces about ends in polygons; and whether these are the entire polygons."""
+    if not aim.polygons:
+        return [], True
+    # Here, not above: shapely takes a while to import, and few struts have polygons.
+    from grashof.synth.quantities.convex import is_convex, piece_about
+
+    found = [
+        (first, piece_about(region, complex(x[first], x[first + 1]), len(region.corners)))
+        for first, region in aim.polygons
+    ]
+    return found, all(is_convex(region) for _, region in aim.polygons)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from grashof.problems import FourBar
+from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
 
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0, "time_limit": None}}
 HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
@@ -17,6 +19,21 @@ ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 # A long note, with a word that is too long for any line.
 MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed: "
 MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed: up to 0"
+
+
+LID = Path(__file__).parents[2] / "docs" / "lid.toml"
+
+
+def placed_lid() -> LinkageSpec:
+    """The lid of the documentation with its strut in a place of its own."""
+    spec = load_linkage_spec(str(LID))
+    assert spec.dynamics is not None
+    assert spec.dynamics.effort is not None
+    (part,) = spec.dynamics.effort.parts
+    (foot, head), size = part.places, part.sizes[60]
+    fixed = replace(part, between=(foot.placed(10, -50), head.placed(120, 20)), sizes=(size,))
+    effort = replace(spec.dynamics.effort, parts=(fixed,))
+    return replace(spec, dynamics=replace(spec.dynamics, effort=effort))
 
 
 class Parts(HTMLParser):

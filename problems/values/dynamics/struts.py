@@ -38,7 +38,8 @@ class EffortPlace(TableValue):
         1 (the ground, whose frame is the global one) to 4; of a six-bar to 6; or the guided body, whose
         frame is at P and turned by `body_angle` relative to the link of P.
     at : Box, length
-        Place in that frame: a box, which is a point where it has no width, or a segment (`Region`).
+        Place in that frame: a box, which is a point where it has no width, or a polygon or segment
+        (`Region`).
     """
 
     link: int | str
@@ -52,7 +53,7 @@ class EffortPlace(TableValue):
         """The keys with their values, as a file has them."""
         at: Any = list(self.point) if self.is_point else {"x": list(self.at.x), "y": list(self.at.y)}
         if isinstance(self.at, Region):
-            at = {"on": self.at.corners.tolist()}
+            at = {"inside" if self.at.on is None else "on": self.at.corners.tolist()}
         return {"link": self.link, "at": at}
 
     @property
@@ -67,8 +68,8 @@ class EffortPlace(TableValue):
 
     @property
     def spanned(self) -> tuple[complex, complex, complex]:
-        """Corner, side and other side of the area, u + i v; a segment has no other side."""
-        if isinstance(self.at, Region):
+        """Corner, side and other side of the box around the area, u + i v; a segment has no other side."""
+        if isinstance(self.at, Region) and self.at.on is not None:
             first, last = self.at.places.tolist()
             return first, last - first, 0j
         (left, right), (low, high) = self.at.x, self.at.y
@@ -227,9 +228,7 @@ def _link(link: object, where: str) -> object:
 
 def _area(at: object, where: str) -> Box:
     if not isinstance(at, Box):
-        raise wrong_value(where, at, "a point [u, v], a box or a segment")
-    if isinstance(at, Region) and at.on is None:
-        raise ProblemError(f"{where} is a polygon; it must be a point, a box or a segment")
+        raise wrong_value(where, at, "a point [u, v], a box or a region")
     if not np.isfinite([*at.x, *at.y]).all():
         raise ProblemError(
             f"{where} has an open side; it must be {{ x = …, y = … }}, each a number or [lo, hi]"

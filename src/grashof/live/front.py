@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 
-from grashof.page.render import DRAWING, page_of, script_of, text_of
+from grashof.page.render import DRAWING, STRUTS, page_of, script_of, text_of
 
 SCRIPTS = (
     *DRAWING,
-    *("picture.js", "curves.js", "table.js", "compare.js", "saving.js", "live/task.js", "live/places.js"),
+    *("picture.js", "curves.js", "table.js", "compare.js", "saving.js", *STRUTS),
+    *("live/task.js", "live/places.js"),
     "live/handles.js",
     *("live/backdrop.js", "live/form.js", "live/listing.js", "live/transport.js", "live/commands.js"),
     *("live/sharing.js", "live/live.js"),

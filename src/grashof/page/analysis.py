@@ -9,17 +9,19 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import verify
-from grashof.page.designs import cylinder_data, legend, linkage_data, scene_of, strut_data
+from grashof.analysis.judge.effort_of_file import effort_of_file
+from grashof.page.designs import cylinder_data, legend, linkage_data, scene_of
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
-from grashof.page.render import DRAWING, render
+from grashof.page.render import DRAWING, STRUTS, render
+from grashof.page.struts import effort_data, strut_data
 from grashof.problems import LinkageSpec
 from grashof.problems.values.text import counted
 from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
 from grashof.wording.numbers import dimensions_text, number_text, value_text
 
-_SCRIPTS = (*DRAWING, "picture.js", "curves.js", "tracks.js", "saving.js", "analysis.js")
+_SCRIPTS = (*DRAWING, "picture.js", "curves.js", "tracks.js", "saving.js", *STRUTS, "analysis.js")
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
 _SMALL = 30  # rows up to which a table is in the page; a larger one is a file next to it
 _DIGITS = 6
@@ -50,6 +52,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
     ]
     facts = {fact.key: fact.value for section in report.sections for fact in section.facts}
     effort = None if spec.dynamics is None else spec.dynamics.effort
+    by_hand = effort_data(effort_of_file(spec))
     cylinder = cylinder_data(spec.cylinder, float(facts.get("cylinder_closed", 0.0)))
     data = {
         "name": spec.name,
@@ -63,6 +66,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
                 "direction": 1 if sweep.speed_rpm >= 0 else -1,
                 **cylinder,
                 **strut_data(spec.linkage, effort),
+                **by_hand,
                 **targets,
             }
             for low, high in sweep.ranges

@@ -18,13 +18,15 @@ from grashof.analysis import (
     stated_loads,
     stated_masses,
 )
-from grashof.analysis.effort.parts import place_on
+from grashof.analysis.effort.case import EffortCase
+from grashof.analysis.judge.effort_travel import effort_of_design
 from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.analysis.judge.wanted_torque import places_of
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.drawing.scene import Scene, bodies_of
 from grashof.page.regions import regions_of
 from grashof.page.render import compact, plain
+from grashof.page.struts import effort_data, strut_data
 from grashof.problems import Cylinder, DynamicsSpec, Linkage, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -39,7 +41,6 @@ from grashof.synth.designs.table import Row
 _SAMPLES = 181
 STEPS = 180
 _ROUNDING = 1e-12  # of a turn
-_BODY = 0.9  # length of the body of a strut as a share of its compressed length
 
 
 def scene_of(problem: Problem) -> dict[str, Any]:
@@ -190,6 +191,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             **_wanted(problem, design.verdict, ahead),
             **cylinder_data(design.verdict.cylinder, design.values["cylinder_closed"]),
             **strut_data(linkage, design.verdict.effort),
+            **effort_data(_effort(problem, design)),
             **_function(problem, linkage, design),
             "figures": {key: plain(value) for key, value in figures.items()},
         }
@@ -207,19 +209,10 @@ def cylinder_data(driven: Cylinder | None, closed: float) -> dict[str, Any]:
     return {"cylinder": {**driven.stated, "closed": closed if np.isfinite(closed) else 0.0}}
 
 
-def strut_data(linkage: Linkage, effort: EffortSpec | None) -> dict[str, Any]:
-    """Placed struts and straight springs for the scripts; empty without one."""
-    parts = [] if effort is None or not effort.is_placed else [part for part in effort.parts if part.places]
-    found = [
-        {
-            "ends": [
-                dict(zip(("link", "at"), place_on(linkage, place), strict=True)) for place in part.places
-            ],
-            "body": _BODY * part.sizes[0].compressed if part.sense > 0 else 0.0,
-        }
-        for part in parts
-    ]
-    return {"struts": found} if found else {}
+def _effort(problem: Problem, design: Candidate) -> EffortCase | None:
+    """The effort of a design with parts."""
+    verdict = design.verdict
+    return None if verdict.effort is None else effort_of_design(design.linkage, problem, verdict)
 
 
 def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import numpy as np
 from grashof.page.render import plain
 from grashof.problems import Box, Problem, Region, Task
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.dynamics.struts import BODY
 
 PIVOTS = ("o2", "o4", "d", "a", "b")  # equal places are drawn once, in this order
 
@@ -26,7 +27,7 @@ def regions_of(problem: Problem) -> list[dict[str, Any]]:
     for box in dict.fromkeys(boxes.values()):
         names = ", ".join(name.upper() for name, other in boxes.items() if other == box)
         found.append(_drawn(f"{names} region", box))
-    found += [*_at_targets(problem), *_on_body(problem)]
+    found += [*_at_targets(problem), *_on_body(problem), *_of_struts(problem)]
     if problem.driver is not None and problem.driver.base is not None:
         found.append(_drawn("region of the cylinder's base", problem.driver.base))
     return found
@@ -42,12 +43,28 @@ def _at_targets(problem: Problem) -> Iterator[dict[str, Any]]:
 
 def _on_body(problem: Problem) -> Iterator[dict[str, Any]]:
     for name in ("a", "b"):
-        box = getattr(problem.requirements, f"{name}_on_body")
-        corners = None if box is None else _at_first_pose(problem.task, box)
-        if corners is not None:
-            sides = np.stack([corners.min(axis=0), corners.max(axis=0)]).T.tolist()
-            words = f"{name.upper()} region on the body"
-            yield {"name": words, "x": sides[0], "y": sides[1], "corners": corners.tolist()}
+        if (box := getattr(problem.requirements, f"{name}_on_body")) is not None:
+            yield from _turned(f"{name.upper()} region on the body", box, problem.task)
+
+
+def _of_struts(problem: Problem) -> Iterator[dict[str, Any]]:
+    """Areas of the ends of struts and springs on the ground and on the body."""
+    effort = None if problem.dynamics is None else problem.dynamics.effort
+    for number, part in enumerate(() if effort is None else effort.parts, start=1):
+        for end, place in enumerate(part.places, start=1):
+            name = f"region of end {end} of part {number}"
+            if place.link == BODY:
+                yield from _turned(name, place.at, problem.task)
+            elif place.link == 1:
+                yield _drawn(name, place.at)
+
+
+def _turned(name: str, box: Box, task: Task) -> Iterator[dict[str, Any]]:
+    """A region on the body where it stands at the first pose, if that is known."""
+    corners = _at_first_pose(task, box)
+    if corners is not None:
+        sides = np.stack([corners.min(axis=0), corners.max(axis=0)]).T.tolist()
+        yield {"name": name, "x": sides[0], "y": sides[1], "corners": corners.tolist()}
 
 
 def _at_first_pose(task: Task, box: Box) -> FloatArray | None:

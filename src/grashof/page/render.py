@@ -17,6 +17,8 @@ DRAWING = (
     "axes.js",
 )  # fmt: skip
 
+STRUTS = ("effort.js", "struts.js")  # after curves.js
+
 
 def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **shown: Any) -> str:
     """A page that needs neither other files nor a network; its template escapes `shown`.

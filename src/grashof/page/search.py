@@ -9,7 +9,7 @@ from typing import Any
 
 from grashof.page.columns import Column, columns_of, figures_of
 from grashof.page.designs import designs_of, legend, loci_of, moves, scene_of
-from grashof.page.render import DRAWING, render
+from grashof.page.render import DRAWING, STRUTS, render
 from grashof.problems import Problem
 from grashof.problems.values.linkages.mechanisms import ROWS
 from grashof.problems.values.text import counted
@@ -22,7 +22,7 @@ from grashof.wording.proof import enclosure_line, proof_line, work_line
 
 _SCRIPTS = (
     *DRAWING, "picture.js", "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "loci.js",
-    "search.js",
+    *STRUTS, "search.js",
 )  # fmt: skip
 
 

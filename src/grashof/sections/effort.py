@@ -16,6 +16,7 @@ from grashof.problems.values.dynamics.effort import SQUARE
 from grashof.study.samples import Columns, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
+from grashof.wording.loads import OVER_TRAVEL, WITHOUT_PARTS, demand_texts, temperature_text
 
 KEY, _TITLE = "effort", "Effort"
 _OF = {"link": "the link of the effort", "driver": "the driver"}
@@ -76,15 +77,15 @@ def _at(case: EffortCase) -> list[str]:
 
 
 def _plots(study: LinkageStudy, case: EffortCase, state: EffortState, columns: Columns) -> tuple[Plot, ...]:
-    over, angles = "angle from the start of the travel (deg)", columns["theta2_deg"]
+    over, angles = OVER_TRAVEL, columns["theta2_deg"]
     series = {
-        f"at {each:g} °C": row for each, row in zip(case.spec.temperatures_c, state.effort, strict=True)
+        temperature_text(each): row for each, row in zip(case.spec.temperatures_c, state.effort, strict=True)
     }
     if not case.spec.parts:
         series = {}
     lines = {
         **series,
-        "without struts and springs" if series else "effort": state.without,
+        WITHOUT_PARTS if series else "effort": state.without,
         **_wanted(case, state),
     }
     plots = [Plot(KEY, "effort", "N", lines, state.angle_deg, over, angles=angles)]
@@ -116,14 +117,10 @@ def _wanted(case: EffortCase, state: EffortState) -> dict[str, FloatArray]:
         inside = (state.angle_deg >= demand.start) & (state.angle_deg <= demand.end)
         end = demand.end if np.isfinite(demand.end) else demand.start + 1
         sense = state.sense if demand.opening else 1.0
-        for side, values in (("least", demand.least), ("most", demand.most)):
-            shift = demand.friction * state.friction * (1 if side == "least" else -1)
+        sides = zip(demand_texts(demand), (demand.least, demand.most), (1, -1), strict=True)
+        for name, values, sign in sides:
+            shift = sign * demand.friction * state.friction
             line = sense * (np.interp(state.angle_deg, (demand.start, end), values) + shift)
-            name = (
-                demand.words
-                if demand.least == demand.most and not demand.friction
-                else f"{demand.words}, {side}"
-            )
             if np.isfinite(values).all():
                 before = found.get(name, np.full(len(inside), np.nan))
                 found[name] = np.where(inside, line, before)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from grashof.problems import CylinderSpec, DynamicsSpec, WantedTorque
-from grashof.problems.values.dynamics.effort import EffortSpec
+from grashof.problems.values.dynamics.effort import Demand, EffortSpec
 from grashof.problems.values.dynamics.struts import BODY
 from grashof.problems.values.errors import listing
 from grashof.problems.values.text import counted
 
+# Names of curves of an effort.
+OVER_TRAVEL, WITHOUT_PARTS = "angle from the start of the travel (deg)", "without struts and springs"
 FEW_ROWS = 4  # most rows of a wanted torque that a summary states in full
 
 
@@ -44,6 +46,18 @@ def effort_text(spec: EffortSpec) -> str:
     words.append(f"at {listing([f'{each:g}' for each in spec.temperatures_c], 'and')} deg C")
     words += [f"{part.count} x {part.kind} of {counted(len(part.sizes), 'size')}" for part in spec.parts]
     return "; ".join(words)
+
+
+def temperature_text(temperature_c: float) -> str:
+    """The name of the curve at a temperature."""
+    return f"at {temperature_c:g} °C"
+
+
+def demand_texts(demand: Demand) -> tuple[str, str]:
+    """The names of the lower and the upper limit of an effort, equal where both are one line."""
+    if demand.least == demand.most and not demand.friction:
+        return demand.words, demand.words
+    return f"{demand.words}, least", f"{demand.words}, most"
 
 
 def cylinder_text(spec: CylinderSpec, unit: str) -> str:

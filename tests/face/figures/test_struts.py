@@ -1,35 +1,21 @@
 """Struts in drawings, and as pages have them: their ends are those of the linkage in each position."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from page_parts import LID, placed_lid
 
 from grashof.analysis import solve_position
 from grashof.drawing.scene import Scene
 from grashof.figures.shapes import placements, shapes_of
 from grashof.figures.subject import Subject
-from grashof.page.designs import strut_data
-from grashof.problems import Box, LinkageSpec, load_linkage_spec
-
-LID = Path(__file__).parents[3] / "docs" / "lid.toml"
-
-
-def placed() -> LinkageSpec:
-    """The lid of the documentation with its strut in a place of its own."""
-    spec = load_linkage_spec(str(LID))
-    assert spec.dynamics is not None
-    assert spec.dynamics.effort is not None
-    (part,) = spec.dynamics.effort.parts
-    (foot, head), size = part.places, part.sizes[60]
-    fixed = replace(part, between=(foot.placed(10, -50), head.placed(120, 20)), sizes=(size,))
-    effort = replace(spec.dynamics.effort, parts=(fixed,))
-    return replace(spec, dynamics=replace(spec.dynamics, effort=effort))
+from grashof.page.struts import strut_data
+from grashof.problems import Box, load_linkage_spec
 
 
 def test_drawings_have_struts_between_their_pivots() -> None:
-    spec = placed()
+    spec = placed_lid()
     subject, theta2 = Subject.of(spec), np.radians([60.0, 85.0, 110.0])
     scene = Scene(subject.linkage, (theta2,))
     for place, angle in zip(
@@ -51,7 +37,7 @@ def test_areas_are_not_drawn_as_struts() -> None:
 
 
 def test_pages_have_both_ends_by_their_links() -> None:
-    spec = placed()
+    spec = placed_lid()
     assert spec.dynamics is not None
     (strut,) = strut_data(spec.linkage, spec.dynamics.effort)["struts"]
     assert strut["ends"] == [{"link": 1, "at": (10, -50)}, {"link": 2, "at": (120, 20)}]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 import pytest
-from page_parts import HOSTILE, MISSES, RECORD, ROCKER, TITLE
+from page_parts import HOSTILE, MISSES, RECORD, ROCKER, TITLE, placed_lid
 from shown_pages import Open, without_complaints
 
 from grashof import load, synthesize
@@ -98,6 +98,13 @@ def inexact() -> Result:
 
 
 @pytest.fixture(scope="package")
+def flaps() -> Result:
+    """Designs with struts, each a family of its own."""
+    found = synthesize(load("kitchen-flap"), starts=6, enough=2)
+    return replace(found, candidates=tuple(replace(each, family=each.id) for each in found.candidates))
+
+
+@pytest.fixture(scope="package")
 def page_path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> PagePath:
     """The file of a page by its name, made when it is first opened."""
     folder, shared = tmp_path_factory.mktemp("pages"), request.getfixturevalue
@@ -123,11 +130,13 @@ def page_path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
         "search": named,
         "alike": lambda: search_page(shared("alike"), RECORD),
         "inexact": lambda: search_page(shared("inexact"), RECORD),
+        "flaps": lambda: search_page(shared("flaps"), RECORD),
         "missed": search,
         "relaxed": lambda: search(note=WAYS),
         "nothing": lambda: search(nearest=()),
         "design": design,
         "rocker": lambda: analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
+        "lid": lambda: analysis_page(report_on(placed_lid()), RECORD),
         "swift": lambda: analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
         "sections": lambda: analysis_page(shared("example"), RECORD),
         "swinging": lambda: analysis_page(shared("swinging"), RECORD),

@@ -16,10 +16,13 @@ from page_parts import RECORD, ROCKER, Parts
 import grashof.figures.parts
 from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_position, virtual_work_torque
 from grashof.analysis.forces.from_spec import stated_masses
+from grashof.live.front import SCRIPTS
 from grashof.output.run_files import write_run
+from grashof.page import analysis, search
 from grashof.page.analysis import analysis_page
 from grashof.page.columns import Column
 from grashof.page.designs import Travel, driver_travel
+from grashof.page.render import script_of
 from grashof.page.search import search_page
 from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load_linkage_spec
 from grashof.survey import report_on
@@ -61,6 +64,16 @@ def test_one_file_without_any_other(hostile: str, kind: str) -> None:
         assert tag not in ("link", "iframe", "img", "object")
     assert set(re.findall(r"\w+://[^\"' ]*", page)) == {"http://www.w3.org/2000/svg"}
     assert not re.search(r"url\(|@import|fetch\(|XMLHttpRequest|import\(", page)
+
+
+@pytest.mark.parametrize(
+    "scripts", [search._SCRIPTS, analysis._SCRIPTS, SCRIPTS], ids=["search", "analysis", "live"]
+)
+def test_scripts_of_a_page_define_each_name_once(scripts: tuple[str, ...]) -> None:
+    """They are joined: of two functions of one name the first would be lost without a word."""
+    found = re.findall(r"^(?:async )?(?:function|const|let|class) (\w+)", script_of(scripts), re.MULTILINE)
+    assert len(found) > 50
+    assert [name for name, count in Counter(found).items() if count > 1] == []
 
 
 def test_figures_are_those_of_the_list(few: Result, tmp_path: Path) -> None:

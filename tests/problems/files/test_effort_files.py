@@ -1,17 +1,19 @@
 """The effort as files state it, and tables of struts and springs; a clear line for each error."""
 
+import math
 import tomllib
 from pathlib import Path
 
 import pytest
 from refusals import refusal
 
-from grashof.problems import LinkageSpec, load
-from grashof.problems.files.effort_schema import HAVE_USUAL, usual_sizes
+from grashof.problems import LinkageSpec, Region, load, load_linkage_spec
+from grashof.problems.files.effort_schema import usual_sizes
 from grashof.problems.files.linkage_schema import linkage_from
 from grashof.problems.files.linkage_writing import linkage_toml
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.dynamics.struts import KINDS
 
 HEAD = """
 length_unit = "{unit}"
@@ -45,7 +47,7 @@ def test_a_table_is_read_by_its_columns_and_units(tmp_path: Path) -> None:
     assert (sizes[1].force_extended, sizes[1].force_compressed, sizes[1].friction) == (100, 130, 0)
 
 
-@pytest.mark.parametrize("kind", HAVE_USUAL)
+@pytest.mark.parametrize("kind", KINDS)
 def test_usual_sizes_are_sound_in_every_unit(kind: str) -> None:
     inches, metres = usual_sizes(kind, "in"), usual_sizes(kind, "m")
     assert len({size.name for size in inches}) == len(inches) >= 30
@@ -54,6 +56,29 @@ def test_usual_sizes_are_sound_in_every_unit(kind: str) -> None:
     if kind == "gas":  # of any gas strut the rod is shorter than the rest
         assert all(1.2 < size.force_compressed / size.force_extended < 1.6 for size in metres)
         assert all(size.extended > 2 * size.stroke for size in metres)
+
+
+def test_usual_compression_springs_are_those_of_their_wire() -> None:
+    """By EN 13906-1 and the least tensile strength of wire SM in EN 10270-1, from the diameters in the names.
+
+    The rate is that of the coil, the least length leaves the clearance between coils, and the stress when
+    solid is the permissible one, but for a free length in half millimetres.
+    """
+    strength = {1: 1980, 1.2: 1920, 1.6: 1830, 2: 1760, 2.5: 1690, 3.2: 1610, 4: 1530, 5: 1460, 6: 1400}
+    strength |= {8: 1310, 10: 1240}
+    for size in usual_sizes("compression", "mm"):
+        wire, mean, coils = map(float, size.name.split("-"))
+        rate = 81500 * wire**4 / (8 * mean**3 * coils)
+        assert size.force_extended == 0
+        assert size.force_compressed == pytest.approx(rate * size.stroke, abs=0.06)
+        solid = (coils + 2) * wire
+        clearance = coils * (0.0015 * mean**2 / wire + 0.1 * wire)
+        assert -1e-9 < size.compressed - solid - clearance < 0.1
+        stresses = [
+            8 * mean * rate * (free - solid) / (math.pi * wire**3)
+            for free in (size.extended, size.extended + 0.5)
+        ]
+        assert stresses[0] <= 0.56 * strength[wire] < stresses[1]
 
 
 @pytest.mark.parametrize(
@@ -75,13 +100,23 @@ def test_files_are_read_back_as_they_are_written(parts: str) -> None:
     assert problem_from(tomllib.loads(problem_toml(problem)), "test").dynamics == problem.dynamics
 
 
-def test_an_end_may_be_on_a_segment_but_not_in_a_polygon() -> None:
-    line = BETWEEN.replace("{ x = [0, 2], y = -1 }", "{ on = [[0, 0], [1, 2]] }")
-    spec = linkage(EFFORT + PART + line)
+@pytest.mark.parametrize("at", ["on = [[0, 0], [1, 2]]", "inside = [[0, 0], [1, 0], [1, 1]]"])
+def test_an_end_may_be_on_a_segment_or_in_a_polygon(at: str) -> None:
+    spec = linkage(EFFORT + PART + BETWEEN.replace("x = [0, 2], y = -1", at))
     assert linkage_from(tomllib.loads(linkage_toml(spec)), "test").dynamics == spec.dynamics
-    inside = line.replace("{ on = [[0, 0], [1, 2]] }", "{ inside = [[0, 0], [1, 0], [1, 1]] }")
-    expected = "effort.parts[0].between[0].at is a polygon; it must be a point, a box or a segment"
-    assert refusal(linkage, EFFORT + PART + inside) == expected
+
+
+def test_the_polygon_of_an_end_may_be_drawn(tmp_path: Path) -> None:
+    drawing = '<svg xmlns="http://www.w3.org/2000/svg"><path id="plate" d="M0 0 L4 0 L4 -2 Z"/></svg>'
+    (tmp_path / "lid.svg").write_text(drawing)
+    drawn = BETWEEN.replace("x = [0, 2], y = -1", 'inside = "lid.svg#plate"')
+    (tmp_path / "lid.toml").write_text(HEAD.format(unit="mm") + EFFORT + PART + drawn)
+    spec = load_linkage_spec(str(tmp_path / "lid.toml"))
+    assert spec.dynamics is not None
+    assert spec.dynamics.effort is not None
+    area = spec.dynamics.effort.parts[0].places[0].at
+    assert isinstance(area, Region)
+    assert set(area.inside or ()) == {(0.0, 0.0), (4.0, 0.0), (4.0, 2.0)}
 
 
 @pytest.mark.parametrize(
@@ -114,8 +149,6 @@ def test_an_end_may_be_on_a_segment_but_not_in_a_polygon() -> None:
         (EFFORT + PART + BETWEEN.replace(", y = -1", ""),
          "effort.parts[0].between[0].at has an open side; "
          "it must be { x = …, y = … }, each a number or [lo, hi]"),
-        (EFFORT + PART.replace("gas", "compression") + BETWEEN,
-         "effort.parts[0].table is missing; there are usual sizes of gas, tension and torsion alone"),
         (EFFORT + PART.replace("gas", "torsion") + "between = [1, 4]\n",
          "effort.parts[0].free_angle_deg is missing; a torsion spring needs it"),
         (EFFORT + PART + BETWEEN + SIZE.replace("stroke = 100", "stroke = 300"),

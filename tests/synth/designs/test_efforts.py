@@ -6,10 +6,12 @@ from pathlib import Path
 import pytest
 
 from grashof import load, synthesize
+from grashof.analysis.effort.parts import place_on
 from grashof.output.process import Interruption
 from grashof.output.run_files import write_run
-from grashof.problems import LinkageSpec, load_linkage_spec
+from grashof.problems import Box, LinkageSpec, Region, load_linkage_spec
 from grashof.problems.files.linkage_writing import linkage_toml
+from grashof.problems.values.dynamics.struts import EffortPlace
 from grashof.synth import Candidate, Result, place_parts
 from grashof.synth.designs.efforts import with_parts
 from grashof.wording.problem import judged_for, verdict_lines
@@ -69,3 +71,30 @@ def test_a_known_strut_whose_stroke_ends_inside_the_travel_is_a_defect(best: Can
     spec = LinkageSpec(best.linkage, "flap", length_unit="mm", dynamics=dynamics)
     lines = verdict_lines(judged_for(best.problem, spec), "flap")
     assert any("missed: effort.parts[0]: the least length, beyond compressed, is " in line for line in lines)
+
+
+def test_a_known_strut_outside_its_area_is_a_defect(best: Candidate) -> None:
+    """Ends in the frame of the body and of its link are the same; areas are of each kind of place."""
+    dynamics, effort = best.problem.dynamics, best.verdict.effort
+    assert dynamics is not None
+    assert effort is not None
+    (part,) = effort.parts
+    link, (u, v) = place_on(best.linkage, part.places[1])
+    x, y = part.places[1].point
+    bare = replace(best, verdict=replace(best.verdict, effort=None))
+    on_link = replace(part, between=(part.places[0], EffortPlace(link, Box((u, u), (v, v)))))
+    areas = {
+        0.0: Region(inside=[(x, y), (x + 30, y), (x, y + 30)]),
+        5.0: Region(inside=[(x + 5, y - 30), (x + 50, y - 30), (x + 50, y + 30), (x + 5, y + 30)]),
+        13.0: Box((x + 5, x + 50), (y + 12, y + 50)),
+        2.0: Region(on=[(x - 9, y + 2), (x + 9, y + 2)]),
+    }
+    for away, at in areas.items():
+        asked = replace(part, between=(part.places[0], EffortPlace("body", at)))
+        problem = replace(best.problem, dynamics=replace(dynamics, effort=replace(effort, parts=(asked,))))
+        judged = with_parts(replace(bare, problem=problem), [on_link])
+        found = [(each.requirement, each.found) for each in judged.verdict.defects]
+        assert found == [("effort.parts[0].between[1].at", pytest.approx(away))] * (away > 0)
+    other = replace(part, between=(part.places[0], EffortPlace(2, Box((u, u), (v, v)))))
+    lines = list(map(str, with_parts(bare, [other]).verdict.defects))
+    assert "effort.parts[0].between[1].link: the link of the end is 2, allowed: 3" in lines

@@ -128,6 +128,37 @@ def test_an_end_stays_on_its_segment() -> None:
     assert -60 <= x <= 140
 
 
+def test_the_best_end_in_a_polygon_is_on_its_side() -> None:
+    """The foot belongs outside: moved there, the strut would do better."""
+    corners = np.array([(-60.0, -120.0), (100.0, -60.0), (-20.0, -20.0)])
+    wanted = {"wanted": ((0.0, 30.0), (50.0, -20.0))}
+    plate = EffortPlace(1, Region(inside=corners.tolist()))
+    case = case_of(PartSpec("gas", (plate, HEAD), GAS[::4]), **wanted)
+    found = placed(case)
+    assert found is not None
+    place = np.array(found.parts[0].places[0].point)
+    sides = np.roll(corners, -1, axis=0) - corners
+    normals = np.stack([-sides[:, 1], sides[:, 0]], axis=1) / np.hypot(*sides.T)[:, None]
+    depth = ((place - corners) * normals).sum(axis=1)
+    assert -1e-9 < depth.min() < 1e-3
+    around = case_of(PartSpec("gas", (FOOT, HEAD), GAS[::4]), **wanted)
+    assert excess(around, placed(around)) < 0.8 * excess(case, found)
+
+
+@pytest.mark.slow
+def test_a_bent_polygon_is_as_good_as_the_better_of_its_boxes() -> None:
+    """An L of two boxes on the body; each alone is a case of its own."""
+    flat, tall = Box((-80, 120), (-60, -30)), Box((-80, -40), (-60, 40))
+    bent = Region(inside=[(-80, -60), (120, -60), (120, -30), (-40, -30), (-40, 40), (-80, 40)])
+    parts = [PartSpec("gas", (FOOT, EffortPlace("body", at)), GAS) for at in (bent, flat, tall)]
+    rows = {"wanted": ((0.0, 30.0), (50.0, -20.0))}
+    for wanted in (rows, {"band": (-5.0, 5.0)}, {"stays_deg": (5.0, 45.0)}):
+        cases = [case_of(part, **wanted) for part in parts]
+        whole, *alone = (excess(case, placed(case)) for case in cases)
+        best = min(alone)
+        assert whole <= best + 0.02 * abs(best)
+
+
 @pytest.mark.slow
 def test_two_parts_are_no_worse_than_one() -> None:
     one = PartSpec("gas", (FOOT, HEAD), GAS)
@@ -135,6 +166,13 @@ def test_two_parts_are_no_worse_than_one() -> None:
     wanted = {"wanted": ((0.0, 12.0), (25.0, 2.0), (50.0, -6.0))}
     alone, both = case_of(one, **wanted), case_of(one, two, **wanted)
     assert excess(both, placed(both)) < 0.9 * excess(alone, placed(alone))
+
+
+def test_a_usual_compression_spring_is_placed() -> None:
+    """It balances most of the lid, which a hand carries with 30 N without it."""
+    case = case_of(PartSpec("compression", (FOOT, HEAD), usual_sizes("compression", "mm")), band=(-2.0, 2.0))
+    assert effort_figures(case_of(band=(-2.0, 2.0))).without.excess > 25
+    assert excess(case, placed(case)) < 0
 
 
 @pytest.mark.slow

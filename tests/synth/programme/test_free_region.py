@@ -6,7 +6,8 @@ from scipy.spatial import Delaunay
 
 from grashof.problems import Requirements
 from grashof.problems.values.areas import solid
-from grashof.synth.programme.free_region import half_planes
+from grashof.synth.programme.structure import PLANES
+from grashof.synth.quantities.convex import half_planes
 from grashof.synth.quantities.screening import keep_out_violation, points_kept_out
 
 STAIRS = np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]], dtype=float)
@@ -34,7 +35,7 @@ def test_a_free_region_holds_its_point_and_nothing_of_the_areas(areas: tuple[np.
     within = np.any([crossings(polygon, grid) for polygon in areas], axis=0)
     assert within.sum() > 200
     for point in rng.uniform(-3, 10, (60, 2)):
-        planes = half_planes(area, complex(*point))
+        planes = half_planes(area, complex(*point), PLANES)
         if np.any([crossings(polygon, point[None]) for polygon in areas]):
             assert not held(planes, point[None]).any()
         else:
@@ -44,14 +45,14 @@ def test_a_free_region_holds_its_point_and_nothing_of_the_areas(areas: tuple[np.
 
 def test_on_the_boundary_a_point_may_slide_along_it() -> None:
     for point, along in ((2 + 0j, 1), (5 + 2j, 1j), (7 + 4j, 1), (5 + 0j, 0), (0 - 3j, 1j)):
-        planes = half_planes(solid([STAIRS]), point)
+        planes = half_planes(solid([STAIRS]), point, PLANES)
         for step in (-0.5, 0.5):
             place = point + step * along
             assert held(planes, np.array([[place.real, place.imag]]), slack=1e-12).all()
 
 
 def test_from_inside_the_nearest_boundary_is_taken() -> None:
-    planes = half_planes(solid([STAIRS]), 5.5 + 1j)  # half a unit from the wall
+    planes = half_planes(solid([STAIRS]), 5.5 + 1j, PLANES)  # half a unit from the wall
     np.testing.assert_allclose(planes[0], [-1, 0, -5], atol=1e-12)
     assert held(planes, np.array([[4.9, 1.0]])).all()
 

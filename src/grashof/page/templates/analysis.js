@@ -44,6 +44,18 @@ class Group {
     });
   }
 
+  // Plots take the places and lines of others by their keys.
+  renew(curves) {
+    const other = this.plots.filter(({ key }) => key in curves);
+    for (const panel of other) {
+      const { series, places, angles } = curves[panel.key];
+      Object.assign(panel, { series, places, angles });
+    }
+    if (!other.length) return;
+    this.node.open = true;
+    this.show();
+  }
+
   mark(degrees) {
     for (const picture of this.pictures) picture.mark(degrees);
   }
@@ -64,6 +76,8 @@ class AnalysisPage extends MovingPage {
         for (const node of nodes) node.open = open;
       });
     }
+    for (const design of designs) design.struts = designs[0].struts; // ends that are moved are so in every range
+    this.struts = new StrutHands(this.stage, $("#struts"), { onChange: (curves) => this.renew(curves) });
     const ranges = $("#range");
     if (ranges) ranges.addEventListener("change", () => this.choose(Number(ranges.value)));
     this.choose(0);
@@ -76,8 +90,14 @@ class AnalysisPage extends MovingPage {
     const { low, high, turns } = this.designs[index];
     for (const group of this.groups) group.show();
     this.stage.show(this.designs[index], this.designs);
+    this.struts.show(this.designs[index]);
     this.travel(this.designs[index]);
     this.player.set(turns ? Math.PI / 3 : (low + high) / 2);
+  }
+
+  // Plots by their keys, whose lines have moved.
+  renew(curves) {
+    for (const group of this.groups) group.renew(curves);
   }
 
   // The part of a plot over the driver angle that lies in the range; null for all of it, as of tracks.
@@ -101,7 +121,7 @@ class AnalysisPage extends MovingPage {
       made: pictures.length,
       drawn: pictures.filter((picture) => picture.drawn).length,
     }));
-    return { range: this.range, playing: this.player.playing, groups, ...this.stage.state };
+    return { range: this.range, playing: this.player.playing, groups, byHand: this.struts.state(), ...this.stage.state };
   }
 }
 

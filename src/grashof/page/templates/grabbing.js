@@ -18,6 +18,9 @@ function nearestAngle(design, theta2, name, [x, y]) {
   return best;
 }
 
+// The finest step that can be seen in a drawing.
+const finestStep = (stage) => 10 ** -Math.ceil(Math.log10(stage.unit));
+
 // Dragging the driver adds up turns, so that one held at its limit comes back where it left it.
 function listenToJoints(stage) {
   let held = null;

@@ -12,6 +12,7 @@ class SearchPage extends MovingPage {
     this.error = this.output && new Curves($("#error"));
     this.torque = designs[0].torque && new Curves($("#torque"), { onPick: turnTo });
     this.dwell = $("#dwell") && new Curves($("#dwell"), { onPick: turnTo });
+    this.struts = new StrutHands(this.stage, $("#struts"), { onPick: turnTo });
     this.scatter = $("#scatter") && new Scatter($("#scatter"), { columns: axes, designs, onPick: choose });
     this.comparison = new Comparison($("#compare"), {
       scene,
@@ -44,6 +45,7 @@ class SearchPage extends MovingPage {
     this.chosen = index;
     this.curves(this.design);
     this.stage.show(this.design);
+    this.struts.show(this.design);
     this.travel(this.design);
     this.player.set(this.design.theta2[0]);
     this.table.mark(index);
@@ -99,6 +101,7 @@ class SearchPage extends MovingPage {
     this.transmission.mark(degrees, [state.mu * DEG]);
     if (this.torque) this.torque.mark(degrees);
     if (this.dwell) this.dwell.mark(degrees);
+    this.struts.mark(degrees);
     super.moved(state);
   }
 
@@ -161,9 +164,9 @@ class SearchPage extends MovingPage {
   saves() {
     const design = () => `${this.found ? "design" : "closest-miss"}-${this.design.figures.rank}`;
     const heading = () => `${$("h1").textContent}, ${$("#named").textContent} (${this.design.id})`;
-    const plots = { transmission: this.transmission, output: this.output, error: this.error, torque: this.torque, dwell: this.dwell };
+    const plots = { transmission: this.transmission, output: this.output, error: this.error, torque: this.torque, dwell: this.dwell, ...this.struts.plots };
     for (const [key, picture] of Object.entries(plots).filter((entry) => entry[1])) {
-      const title = { transmission: "transmission angle", error: "structural error" }[key] || key;
+      const title = { transmission: "transmission angle", error: "structural error", "effort-lengths": "lengths" }[key] || key;
       offerSaves($(`#${key} .save`), title, () => fileName(this.name, design(), key), {
         svg: () => savedSvg(picture, heading()),
         csv: () => savedCsv(picture.panel),
@@ -200,6 +203,7 @@ class SearchPage extends MovingPage {
       playing: this.player.playing,
       listed: this.table.listed().map((index) => this.designs[index].id),
       compared: this.comparison.state(),
+      byHand: this.struts.state(),
     };
   }
 }

@@ -50,7 +50,7 @@ class Handles {
 
   // The finest step that can be seen, or that of the grid.
   step() {
-    return this.snaps ? this.grid() : 10 ** -Math.ceil(Math.log10(this.stage.unit));
+    return this.snaps ? this.grid() : finestStep(this.stage);
   }
 
   // The distance of round numbers that are some 12 px apart.

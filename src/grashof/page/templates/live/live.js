@@ -28,6 +28,7 @@ class Live extends MovingPage {
     for (const name of ["transmission", "torque", "velocity"]) {
       this[name] = new Curves($(`#${name}`, root), { onPick: turnTo });
     }
+    this.struts = new StrutHands(this.stage, $("#struts", root), { onPick: turnTo });
     this.comparison = null;
     new Sharing(this, new Commands(this));
     this.open(link ? { link } : {});
@@ -199,6 +200,7 @@ class Live extends MovingPage {
   showNone() {
     this.chosen = null;
     this.stage.show(null);
+    this.struts.show(null);
     for (const name of ["transmission", "torque", "velocity"]) $(`#${name}`, this.root).hidden = true;
   }
 
@@ -220,6 +222,7 @@ class Live extends MovingPage {
     this.stage.svg.classList.toggle("lost", this.lost.some((each) => each.key === key));
     this.curves(design);
     this.stage.show(design);
+    this.struts.show(design);
     this.travel(design);
     if (first || other) this.player.set(design.theta2[0]);
     else this.player.set(within(design, this.stage.theta2));
@@ -242,6 +245,7 @@ class Live extends MovingPage {
     this.transmission.mark(degrees, [state.mu * DEG]);
     this.velocity.mark(degrees, [pointSpeed(this.design.linkage, state)]);
     if (this.design.torque) this.torque.mark(degrees);
+    this.struts.mark(degrees);
     super.moved(state);
   }
 
