@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import zip_longest
 from typing import ClassVar, TypeAlias
 
 import numpy as np
@@ -112,9 +113,7 @@ class LimitPositions(DesignFinder):
             if "exact" in {defect.requirement for defect in each.verdict.defects}:
                 continue
             start = Start.of_linkage(self.scaled, each.linkage, each.verdict)
-            bend = np.exp(
-                1j * (start.theta3[0] - start.theta2[0])
-            )  # from link 2 to link 3, a quarter turn or none
+            bend = np.exp(1j * (start.theta3[0] - start.theta2[0]))  # stretched or folded, of rods to a side
             way = start.assembly, complex(np.round(bend))
             starts += [start] * (ways[way] < _ONWARD)
             ways[way] += 1
@@ -206,16 +205,23 @@ class LimitPositions(DesignFinder):
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> list[Start]:
         """Members anywhere that keep all limits, then some others, from which a programme moves the least."""
-        inside, outside = list[Start](), list[Start]()
+        inside, outside = list[list[Start]](), list[Start]()
         groups = self.near(rng)
         for screened in groups:
             feasible = screened.feasible
             missed = np.where(feasible, np.inf, screened.violations.sum(axis=1))
             closest = np.argsort(missed)[: min(_MISSING // len(groups), int((~feasible).sum()))]
-            for some, rows in ((inside, np.flatnonzero(feasible)[:count]), (outside, closest)):
-                some += [Start.of_screened(screened, k, self.scaled.objective) for k in rows.tolist()]
-        starts = [start.under(settled=True) for start in inside[:count]]
-        return starts + [start.under(settled=True, stay=self.freedom) for start in outside]
+            within, beyond = (
+                [
+                    Start.of_screened(screened, k, self.scaled.objective).under(settled=True)
+                    for k in rows.tolist()
+                ]
+                for rows in (np.flatnonzero(feasible)[:count], closest)
+            )
+            inside.append(within)
+            outside += [start.under(stay=self.freedom) for start in beyond]
+        in_turn = [start for each in zip_longest(*inside) for start in each if start is not None]
+        return in_turn[:count] + outside
 
     def near(self, rng: np.random.Generator, /) -> list[Screened]:
         """Members of each family, and their mirror images, of random scale and place, screened."""

@@ -67,6 +67,23 @@ def test_no_crank_rocker_keeps_a_limit_at_a_limit_position_and_does_better(targe
 
 
 @pytest.mark.slow
+def test_no_crank_rocker_keeps_a_rate_of_the_coupler_and_does_better() -> None:
+    """The rate over the turn is a matter of proportions alone; by the loop, in small steps."""
+    turn, known = np.exp(1j * np.linspace(0, 2 * np.pi, 721)), 0.0
+    for o4, a, b, mu in rockers(80, 10 / 9):
+        side, r4 = np.sign(((b - a).conj() * (b - o4)).imag)[0], abs(b[0] - o4)
+        crank = abs(a[0]) * turn
+        way = o4 - crank
+        along = (np.abs(way) ** 2 + 1 - r4**2) / (2 * np.abs(way))
+        coupler = (along + 1j * side * np.sqrt(1 - along**2)) * way / np.abs(way)
+        output = coupler - way
+        rate = (crank.conj() * output).imag / (coupler.conj() * output).imag
+        known = max(known, mu if np.abs(rate).max() <= 0.5 else 0.0)
+    assert 30 < known < 37.7
+    assert worst(found(80, 10 / 9, coupler_rate=[-0.5, 0.5])).max() == pytest.approx(known, abs=0.05)
+
+
+@pytest.mark.slow
 @pytest.mark.quick("slider-crank")
 @pytest.mark.parametrize("mechanism", ["slider-crank", "inverted-slider-crank"])
 def test_limits_at_limit_positions_of_slider_kinds_are_kept(mechanism: str) -> None:
