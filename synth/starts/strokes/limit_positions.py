@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import zip_longest
-from typing import ClassVar, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
-from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.finder import ROUNDS_DONE, DesignFinder
 from grashof.synth.starts.strokes.rocker_kind import RockerKind
 from grashof.synth.starts.strokes.shaper_kind import ShaperKind
 from grashof.synth.starts.strokes.slider_kind import SliderKind
@@ -54,12 +54,15 @@ def stroke_kind_of(kind: Kind) -> type[StrokeKind]:
 class LimitPositions(DesignFinder):
     """All linkages with a swing, or a stroke, and a time ratio."""
 
-    exhausted: ClassVar[str] = "no others are worth listing"
-
     @property
     def beginning(self) -> str:
         """The first step of the search, in words."""
         return f"computing {self.stroke_kind.what} by their limit positions"
+
+    @property
+    def exhausted(self) -> str:
+        """Why a search ends after all its rounds: families are known in full, places are drawn."""
+        return ROUNDS_DONE if self.elsewhere else "no others are worth listing"
 
     @cached_property
     def stroke_kind(self) -> StrokeKind:
