@@ -112,7 +112,7 @@ class Strokes:
         beside = (chord.conj() * b[:, 0]).imag / np.abs(chord)  # of the slide from O2
         return {
             "r1": np.abs(o4), "r2": share * rod, "r3": rod, "r4": np.abs(b[:, 0] - o4),
-            "beside": np.abs(beside),
+            "beside": np.abs(beside), "offset": self.side * beside,
             "along": chord / np.abs(chord), "o2": o2[:, 0], "o4": o2[:, 0] + o4, "a": o2 + a, "b": o2 + b,
         }  # fmt: skip
 
@@ -147,6 +147,8 @@ class Strokes:
         rows.append(np.log(wanted.link_ratio_max) - np.log(lengths.max(axis=0) / lengths.min(axis=0)))
         if task.stroke is None:
             rows += within(at["o4"], wanted.o4)
+        elif wanted.offset is not None:
+            rows += [at["offset"] - wanted.offset[0], wanted.offset[1] - at["offset"]]
         rows += within(at["o2"], wanted.o2)
         for limits in wanted.at:
             for k in ((np.array(limits.targets) - 1) % 2).tolist():
@@ -240,11 +242,14 @@ def free_stroke(slides: bool, number: int) -> Candidate:
     """The best design of a random stroke whose pivots lie in boxes."""
     rng = np.random.default_rng([17, number])
     swing, ratio = float(rng.uniform(25, 100)), float(rng.uniform(1.0, 1.25))
-    wide = 4 * WIDE if slides else WIDE
+    wide = 2 * WIDE if slides else WIDE
     near = {"o2": Box(x=(-wide, wide), y=(-wide, wide))}
     if slides:
         task = StrokeTask(stroke=1.0, time_ratio=ratio)
-        wanted, kind = Requirements(**near, slide_angle_deg=0.0, link_ratio_max=5.0), "slider-crank"
+        wanted, kind = (
+            Requirements(**near, slide_angle_deg=0.0, link_ratio_max=5.0, offset=(0, 5)),
+            "slider-crank",
+        )
     else:
         task = StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio)
         near["o4"] = Box(x=(1 - WIDE, 1 + WIDE), y=(-WIDE, WIDE))
@@ -271,7 +276,7 @@ def _distance(a: complex, b: complex, o4: complex, rng: np.random.Generator) -> 
 def _heading(a: complex, b: complex, _: complex, rng: np.random.Generator) -> dict[str, Any]:
     """A direction of the coupler away from the best one."""
     angle = float(np.degrees(np.angle(b - a)))
-    away, wide = float(rng.uniform(2, 5)), 50.0
+    away, wide = float(rng.uniform(3, 8)), 50.0
     low = angle + away if rng.random() < 0.5 else angle - away - wide
     return {"coupler_angle_deg": (low, low + wide)}
 

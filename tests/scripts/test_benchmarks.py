@@ -125,7 +125,7 @@ def test_the_benchmark_of_limits_measures(run: Any, script: Script, monkeypatch:
 @pytest.mark.slow
 def test_strokes_are_as_good_as_those_of_the_independent_search(run: Any) -> None:
     assert "1 of 1 within 2 %" in run("outputs", "swing beside an independent search: coupler", 1)
-    assert "1 of 1 within 2 %" in run("outputs", "stroke beside an independent search: distance", 1)
+    assert "1 of 1 within 2 %" in run("outputs", "swing beside an independent search: distance", 1)
 
 
 @pytest.mark.study
