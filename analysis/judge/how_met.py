@@ -32,11 +32,11 @@ from grashof.problems import (
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 from grashof.problems.values.tasks.closed_curve import spline_length
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
+from grashof.problems.values.tasks.stroke_task import EVEN
 from grashof.problems.values.tasks.tandem_task import LINKS
 
 Members: TypeAlias = Sequence[Linkage]
 MIRRORED = 1e-9  # sizes: allowed distance of B from the mirror image of A
-_EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +166,7 @@ def _slow_stroke(linkage: Linkage, wanted: Requirements) -> tuple[FloatArray, Ta
     sense = -1 if wanted.driver_sense == "cw" else 1
     stretched, folded = np.nan_to_num(output_stroke(linkage).theta2, nan=0.0).tolist()
     there = sense * (folded - stretched) % TURN
-    first, way = (stretched, there) if there > np.pi - _EVEN else (folded, TURN - there)
+    first, way = (stretched, there) if there > np.pi - EVEN else (folded, TURN - there)
     first -= TURN * np.ceil((first - np.pi) / TURN)
     theta2 = np.array([first, first + sense * way])
     return theta2, TaskMotion.ordered(theta2, sense).closed()

@@ -14,7 +14,7 @@ from importlib import import_module
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded
 
 BENCHMARKS = (
-    "catalogue", "costs", "dwells", "eight_points", "kinematics", "limited", "pages", "planted", "proofs",
+    "catalogue", "costs", "eight_points", "kinematics", "limited", "outputs", "pages", "planted", "proofs",
     "rounds", "six_bars", "struts", "wanted_torque",
 )  # fmt: skip
 

@@ -25,6 +25,7 @@ from grashof.synth.programme.constraints import (
 )
 from grashof.synth.programme.errors import bound_error, square
 from grashof.synth.programme.instants import bound_second_loop, overlooked_instants
+from grashof.synth.programme.limit_positions import stand_at_limits
 from grashof.synth.programme.limits import ADDED, cost_of_goals, peak_unit, require_limits
 from grashof.synth.programme.second_loop import SecondLoop
 from grashof.synth.programme.start import Start
@@ -159,6 +160,7 @@ def _stated(
         build.slack = build.unknown("slack", 1, lambda *_: 1.0, always(0.0, FAR))
     places = close_at_poses(build, form, x) if form.poses else close_at_points(build, form, x, targets)
     require_modes(build, form, x, places)
+    stand_at_limits(build, form, x, places)
     stand_nearest(build, form, x, places, targets)
     bound_error(build, form, x, places, targets)
     bound_transmission(build, form, x, places)

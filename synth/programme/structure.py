@@ -40,6 +40,7 @@ class Form:
     angles: tuple[bool, ...]  # which have a body angle
     exact: bool  # every target is met; otherwise the squared distances are the objective
     timed: bool  # driver rotations from the first target are prescribed
+    at_limits: bool  # targets are the limit positions of a swing or stroke
     crank: bool  # the driver turns fully
     same_branch: bool
     over_task: bool  # transmission is judged over the task, not over the turn
@@ -107,6 +108,7 @@ class Form:
             angles=tuple((scaled.turn_weights > 0)[list(start.visit)].tolist()),
             exact=scaled.exact,
             timed=scaled.timed,
+            at_limits=scaled.problem.task.at_limits,
             crank=wanted.rotatability is not Rotatability.ANY,
             same_branch=wanted.same_branch,
             over_task=wanted.transmission_over is TransmissionOver.TASK and not closed,

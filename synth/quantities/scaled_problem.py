@@ -8,7 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
-from grashof.problems import Linkage, Objective, Problem, Requirements, Rotatability, Task
+from grashof.problems import (
+    Linkage,
+    Objective,
+    Problem,
+    Requirements,
+    Rotatability,
+    Task,
+    TransmissionOver,
+)
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanisms import has_one_loop
 from grashof.problems.values.requirements.quantities import Quantity
@@ -116,6 +124,11 @@ class ScaledProblem:
         return self.problem.task.in_plane and self.one_loop
 
     @property
+    def solvable(self) -> bool:
+        """Whether a programme covers the targets: in the plane, or limit positions of one stroke."""
+        return self.has_targets or self.problem.task.at_limits
+
+    @property
     def one_loop(self) -> bool:
         """Whether the linkages have a single loop."""
         return has_one_loop(self.problem.mechanism[0])
@@ -189,7 +202,12 @@ class ScaledProblem:
 
 
 def _turning(wanted: Requirements, task: Task) -> Requirements:
-    """The requirements of a closed task, which takes a full turn of the driver for any rotatability."""
+    """The requirements of a closed task, which takes a full turn of the driver for any rotatability.
+
+    Targets lie all round it, but for limit positions.
+    """
+    if task.at_limits:
+        wanted = replace(wanted, transmission_over=TransmissionOver.CYCLE)
     if wanted.rotatability is not Rotatability.ANY or not task.closed:
         return wanted
     return replace(wanted, rotatability=Rotatability.FULL_CRANK, rotatability_margin=0.0)

@@ -95,10 +95,11 @@ def _attempt(scaled: ScaledProblem, start: Proposal, number: int, cognates: bool
         return Attempt(AS_IT_IS, (yield ToJudge(start.linkage, number, 0, cylinder=start.cylinder)))
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
-    solvable = scaled.has_targets or start.second is not None
+    solvable = scaled.solvable or start.second is not None
     if start.terms.settled or not solvable or not set(UNSMOOTH).isdisjoint(start.terms.relaxed):
         done = yield from polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
-    may_move = scaled.has_targets and start.terms.settled and finder.freedom
+    closed = bool(np.isfinite(start.points).all())
+    may_move = scaled.solvable and start.terms.settled and finder.freedom and closed
     if done is None or (may_move and not done.verified):
         done = yield from (_clear if start.second is None else _in_strides)(scaled, start, number)
     if cognates and done.verified and finder.cognates:

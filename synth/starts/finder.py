@@ -13,6 +13,8 @@ from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 
+ROUNDS_DONE = "its rounds are done; an effort above 1 adds more"  # why a search that draws ends
+
 
 @dataclass(frozen=True)
 class Finder(ABC):

@@ -15,7 +15,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.problems import FourBar, SliderCrank, Task
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.tasks.stroke_task import EVEN
 
 # Shares r2 / r3 at which a family is examined, close where one of the two vanishes beside the other.
 _GRID = np.unique(
@@ -51,8 +52,13 @@ class StrokeLinkages:
 
     @property
     def mirrored(self) -> StrokeLinkages:
-        """Their mirror images, in which the driver turns the other way."""
-        return replace(self, first=-self.last, last=-self.first, assembly=-self.assembly)
+        """Their mirror images, in which the driver turns the other way.
+
+        Of strokes that take equally long, the one from the stretched position counts as the slow one.
+        """
+        even = self.last - self.first <= np.pi + EVEN
+        first, last = np.where(even, [-self.first, TURN - self.last], [-self.last, -self.first])
+        return replace(self, first=first, last=last, assembly=-self.assembly)
 
 
 _LEAST_SHARE = float(_GRID[0])

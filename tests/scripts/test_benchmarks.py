@@ -122,6 +122,12 @@ def test_the_benchmark_of_limits_measures(run: Any, script: Script, monkeypatch:
     assert "1 of 1 within 2 %" in run("limited", "random", 1)
 
 
+@pytest.mark.slow
+def test_strokes_are_as_good_as_those_of_the_independent_search(run: Any) -> None:
+    assert "1 of 1 within 2 %" in run("outputs", "swing beside an independent search: coupler", 1)
+    assert "1 of 1 within 2 %" in run("outputs", "swing beside an independent search: distance", 1)
+
+
 @pytest.mark.study
 def test_benchmarks_of_searches_measure(run: Any) -> None:
     assert "1 of 1 solved" in run("planted", "four poses", 1)

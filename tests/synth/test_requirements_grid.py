@@ -23,6 +23,7 @@ from grashof.problems import (
     Problem,
     Region,
     Requirements,
+    StrokeTask,
 )
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.distances import PAIRS
@@ -48,7 +49,7 @@ def noisy(rows: FloatArray, seed: int) -> FloatArray:
     return rows + np.random.default_rng(seed).normal(0, 0.02 * np.ptp(rows[~np.isnan(rows)]), rows.shape)
 
 
-def tasks() -> dict[str, MotionTask | PathTask]:
+def tasks() -> dict[str, MotionTask | PathTask | StrokeTask]:
     rng = np.random.default_rng(8)
     four, _ = planted_motion(rng, poses=4)
     many, _ = planted_motion(rng, poses=6)
@@ -67,6 +68,7 @@ def tasks() -> dict[str, MotionTask | PathTask]:
         "points met": five,
         "points fitted": PathTask(noisy(long.points, 4)),
         "closed points": PathTask(closed, closed=True),
+        "stroke": StrokeTask.from_degrees(swing_deg=60, time_ratio=1.15),
     }
 
 
@@ -89,7 +91,9 @@ class Pool:
             manufacturing=Manufacturing(0.01),
         )
         scaled = ScaledProblem.of(self.problem)
+        self.scale = scaled.frame.scale
         found = finder_for(scaled).near(np.random.default_rng(3))
+        found = Screened.joined(found) if isinstance(found, list) else found
         found = found[np.linspace(0, len(found) - 1, min(len(found), 5 * POOL)).astype(int)]
         body = None if scaled.motion is not None else found.body_angle
         batch = scaled.linkages(found.points, found.assembly, body)
@@ -101,6 +105,12 @@ class Pool:
     def values(self, linkages: Sequence[FourBar], problem: Problem) -> list[Values]:
         verdicts = verdicts_of(linkages, problem)
         return [Values(one, verdict, problem) for one, verdict in zip(linkages, verdicts, strict=True)]
+
+    def screened_by(self, scaled: ScaledProblem) -> Screened:
+        """The linkages screened by other requirements, which may state another size."""
+        unit = self.scale / scaled.frame.scale
+        points, coupler = unit * self.screened.points, unit * self.screened.coupler
+        return rejudged(scaled, replace(self.screened, points=points, coupler=coupler))
 
     def verdicts(self, problem: Problem) -> list[Verdict]:
         """Of the same linkages by other requirements."""
@@ -170,10 +180,12 @@ def with_field(of: Pool, name: str, value: Any) -> Problem:
 
 
 def stated(of: Pool, name: str) -> bool:
-    """Whether the problem states what a quantity needs, and linkages of the pool have it."""
-    if not of.problem.states(LIMITS[name].quantity.needs):
+    """Whether the problem states what a quantity needs, and linkages of the pool have it, not all alike."""
+    quantity = LIMITS[name].quantity
+    if not of.problem.states(quantity.needs) or quantity.key in of.problem.task.without:
         return False
-    return bool(np.isfinite(of.ends(name)).all())
+    ends = of.ends(name)
+    return bool(np.isfinite(ends).all()) and (np.ptp(ends[:, 0]) > NEAR or LIMITS[name].kind is Kind.WORD)
 
 
 # Their searches take longer than half a second.
@@ -210,6 +222,7 @@ def is_steered(name: str) -> bool:
     *(f"poses met-{name}" for name in LIMITS if name not in HEAVY),
     "closed points-r4",
     "closed points-driver_sense",
+    *(f"stroke-{name}" for name in ("a", "b", "coupler_angle_deg", "coupler_rate", "r3")),
 )
 @pytest.mark.parametrize("name", LIMITS)
 @pytest.mark.parametrize("kind", TASKS)
@@ -229,7 +242,7 @@ def test_misses_are_named_and_requirements_kept(kind: str, name: str) -> None:
         return
     scaled = ScaledProblem.of(problem)
     if not put_there:
-        seen, missed = rejudged(scaled, of.screened).violations[:, GROUPS.index(name)] > 0, beyond > 0
+        seen, missed = of.screened_by(scaled).violations[:, GROUPS.index(name)] > 0, beyond > 0
         if over_motion(name):  # sampled: the judge looks between
             assert not (seen & ~missed & clear).any()
             far = beyond > 0.05 * np.abs(of.ends(name)).max(axis=1)
@@ -270,7 +283,7 @@ def distances(design: Values, pair: str) -> FloatArray:
     return np.abs(places[one] - places[other]) * np.ones(len(theta2))
 
 
-@pytest.mark.quick("poses met-most-b-o2", "poses met-fixed-b-p")
+@pytest.mark.quick("poses met-most-b-o2", "poses met-fixed-b-p", "stroke-least-a-o4")
 @pytest.mark.parametrize("pair", PAIRS)
 @pytest.mark.parametrize("side", ["least", "most", "fixed"])
 @pytest.mark.parametrize("kind", TASKS)
@@ -278,8 +291,8 @@ def test_misses_are_named_and_distances_kept(kind: str, side: str, pair: str) ->
     of = pool(kind)
     low, high = np.array([[apart.min(), apart.max()] for apart in (distances(v, pair) for v in of.known)]).T
     if side == "fixed":
-        if pair not in ("a-p", "b-p"):  # the others change with the driver
-            return
+        if pair not in ("a-p", "b-p") or (kind == "stroke" and pair == "a-p"):  # P is A
+            return  # the others change with the driver
         asked = float(np.sort(low)[len(low) // 2]) + 100 * NEAR * of.problem.task.size
         limits, beyond = (asked, asked), np.abs(low - asked)
     else:
@@ -296,7 +309,7 @@ def test_misses_are_named_and_distances_kept(kind: str, side: str, pair: str) ->
                 missed / problem.scale(LIMITS["distances"].quantity), rel=1e-6
             )
     scaled = ScaledProblem.of(problem)
-    seen = rejudged(scaled, of.screened).violations[:, GROUPS.index("distances")] > 0
+    seen = of.screened_by(scaled).violations[:, GROUPS.index("distances")] > 0
     np.testing.assert_array_equal(seen[clear], (beyond > 0)[clear])
     assert solved_from_those_that_miss(scaled, of, np.where(clear, beyond, 0.0))
 
@@ -353,7 +366,9 @@ def distance_from(line: ComplexArray, at: ComplexArray) -> FloatArray:
     return away
 
 
-@pytest.mark.quick("poses met-polygon-o2", "poses met-notched-a_on_body", "poses met-segment-o4")
+@pytest.mark.quick(
+    "poses met-polygon-o2", "poses met-notched-a_on_body", "poses met-segment-o4", "stroke-polygon-b"
+)
 @pytest.mark.parametrize("name", JOINTS)
 @pytest.mark.parametrize("shape", ["polygon", "notched", "segment"])
 @pytest.mark.parametrize("kind", TASKS)
@@ -374,6 +389,6 @@ def test_misses_are_named_and_regions_kept(kind: str, shape: str, name: str) -> 
             if missed > 0:
                 assert found[0].found == pytest.approx(missed, rel=1e-6)
     scaled = ScaledProblem.of(problem)
-    seen = rejudged(scaled, of.screened).violations[:, GROUPS.index(name)] > 0
+    seen = of.screened_by(scaled).violations[:, GROUPS.index(name)] > 0
     np.testing.assert_array_equal(seen[clear], (beyond > 0)[clear])
     assert solved_from_those_that_miss(scaled, of, np.where(clear, beyond, 0.0))

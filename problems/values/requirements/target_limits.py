@@ -37,7 +37,10 @@ class TargetLimits:
     ----------
     targets : sequence of int
         Numbers of the poses, points or pairs of a function, counted from 1. Of a law over its range they are
-        the 41 Chebyshev-Lobatto points.
+        the 41 Chebyshev-Lobatto points. Of a stroke 1 is the limit position in which the slow stroke begins,
+        2 the one in which it ends; the driver turns counter-clockwise unless `driver_sense` is "cw", and of
+        strokes that take equally long the one from the stretched position counts as the slow one. There
+        `past_deg`, `instant_centre`, `coupler_rate` and `mechanical_advantage_min` say nothing.
     a, b : Box or Region, optional
         Where this moving pivot may be there.
     instant_centre : Box, optional
@@ -102,11 +105,17 @@ class TargetLimits:
 
     def wrong(self, task: Task, kinds: Sequence[str], where: str) -> list[str]:
         """Contradictions with a task and kinds of linkages, a line each."""
-        if not (task.in_plane or task.has_output.any()):
-            return [f"{where} does not go with a {task.kind}; it needs poses, points or pairs of a function"]
+        if not (task.in_plane or task.has_output.any() or task.at_limits):
+            return [
+                f"{where} does not go with {task.described}; "
+                "it needs poses, points, pairs of a function or the limit positions of one stroke"
+            ]
         beyond = [number for number in self.targets if number > len(task)]
         wrong = [f"{where}.targets has {number}; the last target is {len(task)}" for number in beyond]
         for name in self.limited:
+            if task.at_limits and (why := _IN_LINE.get(name)):
+                wrong.append(f"{where}.{name} does not go with a stroke; in a limit position {why}")
+                continue
             limits, every = self.named.get(name), {"": _kinds_with(name)}
             if limits is not None:
                 every = {f".{each}": [*limits.kinds_with(each)] for each in limits}
@@ -188,4 +197,11 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
 }
 LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name not in ("targets", "links"))
 # Points and lengths without which a limit has no meaning; of those not named here r3 and r4.
+# Limits that say nothing in limit positions, and why.
+_IN_LINE = {
+    "past_deg": "driver and coupler are in line",
+    "instant_centre": "that is B; limit b",
+    "coupler_rate": "it follows from lengths, r2/r3; limit link_ratios",
+    "mechanical_advantage_min": "the advantage is infinite",
+}
 _NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}, "coupler_angle_deg": {"a"}, "coupler_rate": {"a"}}

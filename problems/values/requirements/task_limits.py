@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.box import Box
 from grashof.problems.values.checks import GREATEST, LEAST
 from grashof.problems.values.errors import shown, shown_key
 from grashof.problems.values.linkages.cylinder import CylinderSpec
@@ -265,4 +266,23 @@ def stated_size(wanted: Requirements) -> float:
         ]
         if LEAST < (distance := math.hypot(*apart)) < GREATEST:
             return distance
-    return 1.0
+    return next((size for size in _stated_apart(wanted) if LEAST < size < GREATEST), 1.0)
+
+
+def _stated_apart(wanted: Requirements) -> Iterator[float]:
+    """Upper limits of distances, at most ten times the lower ones; the diagonal of all places."""
+    for named in (wanted.named, *(each.named for each in wanted.at)):
+        for low, high in named.get("distances", {}).values():
+            yield min(high, 10 * low) if low > 0 else high
+    sides = [
+        [end for box in stated_places(wanted) for end in getattr(box, axis) if math.isfinite(end)]
+        for axis in "xy"
+    ]
+    yield math.hypot(*(max(side) - min(side) for side in sides if side))
+
+
+def stated_places(wanted: Requirements) -> list[Box]:
+    """Where pivots may be, at all targets or at some."""
+    places = [wanted.o2, wanted.o4, wanted.a, wanted.b]
+    places += [box for each in wanted.at for box in (each.a, each.b)]
+    return [box for box in places if box is not None]

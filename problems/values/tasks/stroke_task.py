@@ -18,6 +18,7 @@ from grashof.problems.values.text import with_article
 from grashof.problems.values.value_bases import set_fields
 
 LEAST_SWING = 1e-3  # rad
+EVEN = 1e-7  # rad: strokes whose driver rotations are so close to half a turn take equally long
 # Of an offset slider-crank. Up to 3 there are some in theory, whose transmission angle is below
 # a thousandth of a degree: rounding locks them.
 MOST_SLIDE_RATIO = 2.999

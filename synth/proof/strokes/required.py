@@ -54,7 +54,8 @@ def sizes_left_out(scaled: ScaledProblem) -> tuple[str, ...]:
         for name, limit in wanted.limited.items()
         if name not in _SIZES | _EITHER and kind in limit.quantity.kinds
     ]
-    beyond += ["keep_out"] * bool(wanted.keep_out) + ["constraints"] * bool(scaled.constraints)
+    beyond += ["at"] * bool(wanted.at) + ["keep_out"] * bool(wanted.keep_out)
+    beyond += ["constraints"] * bool(scaled.constraints)
     free = len(_MOVED.intersection(beyond)) <= 1 and len(_TURNED.intersection(beyond)) <= 1
     return () if free and set(beyond) <= _MOVED | _TURNED else tuple(beyond)
 

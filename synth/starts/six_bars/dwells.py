@@ -18,7 +18,7 @@ from grashof.synth.loop.feasible import Demand
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch
-from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.finder import ROUNDS_DONE, DesignFinder
 from grashof.synth.starts.six_bars.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 from grashof.synth.starts.six_bars.placing import place_of
 
@@ -35,7 +35,7 @@ class Dwells(DesignFinder):
     """Dwell linkages of least band, round by round from other four-bars."""
 
     beginning: ClassVar[str] = "looking for coupler curves with an arc"
-    exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
+    exhausted: ClassVar[str] = ROUNDS_DONE
     rounds_a_pass: ClassVar[int] = ROUNDS
 
     @property

@@ -21,7 +21,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.coupler_search import refuse_few, single_position
 from grashof.synth.starts.exact_poses import pure_rotation, refuse_equal
-from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.finder import ROUNDS_DONE, DesignFinder
 from grashof.synth.starts.loop_search import project
 from grashof.synth.starts.six_bars.carried import Carried, around
 from grashof.synth.starts.six_bars.chains import FIRST_STAGES, QUICK_STAGES, STAGES, draw, fitted, linkages
@@ -60,7 +60,7 @@ class SixBars(DesignFinder):
 
     beginning: ClassVar[str] = "looking for six-bars"
     searches_near: ClassVar[float] = 2
-    exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
+    exhausted: ClassVar[str] = ROUNDS_DONE
 
     @cached_property
     def wanted(self) -> Requirements:

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import ClassVar, TypeAlias
+from itertools import zip_longest
+from typing import TypeAlias
 
 import numpy as np
 
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.region import standing
+from grashof.problems.values.requirements.task_limits import stated_places
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
-from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.finder import ROUNDS_DONE, DesignFinder
 from grashof.synth.starts.strokes.rocker_kind import RockerKind
 from grashof.synth.starts.strokes.shaper_kind import ShaperKind
 from grashof.synth.starts.strokes.slider_kind import SliderKind
@@ -29,10 +32,12 @@ from grashof.synth.theory.limit_positions import Family, StrokeLinkages, best_of
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
 _SAMPLES = 400  # members of a stretch that are examined
 _FIRST = 12  # as they stand by themselves, where more than lengths and pivots decides
+_EACH = 5  # of each stretch, where a programme moves them
 _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decides
 _DRAWS = 4000  # of them in each round
 _MANY = 20  # members to choose the closest from, where the families do not decide
-_MISSING = 4  # of these are kept though they miss something, to report it
+_MISSING = 4  # of these are kept though they miss something, for a programme to move them, or to report it
+_ONWARD = 3  # designs of each way to pass the limit positions from which a programme continues
 
 # O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
 _Positions: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
@@ -49,17 +54,26 @@ def stroke_kind_of(kind: Kind) -> type[StrokeKind]:
 class LimitPositions(DesignFinder):
     """All linkages with a swing, or a stroke, and a time ratio."""
 
-    exhausted: ClassVar[str] = "no others are worth listing"
-
     @property
     def beginning(self) -> str:
         """The first step of the search, in words."""
         return f"computing {self.stroke_kind.what} by their limit positions"
 
+    @property
+    def exhausted(self) -> str:
+        """Why a search ends after all its rounds: families are known in full, places are drawn."""
+        return ROUNDS_DONE if self.elsewhere else "no others are worth listing"
+
     @cached_property
     def stroke_kind(self) -> StrokeKind:
         """Families and places of this kind of linkage."""
         return stroke_kind_of(self.scaled.kind)(self.task, self.wanted)
+
+    @property
+    def freedom(self) -> bool:
+        """Whether limits besides those that the families keep can be kept by a programme: all but areas."""
+        beyond = set(self.wanted.limited) - self.stroke_kind.kept
+        return bool(beyond or self.scaled.every_constraint)
 
     @property
     def rounds_a_pass(self) -> int:
@@ -80,8 +94,7 @@ class LimitPositions(DesignFinder):
     @property
     def elsewhere(self) -> bool:
         """Whether more than lengths, pivots and transmission is limited: more places are tried then."""
-        beyond = set(self.wanted.limited) - self.stroke_kind.kept
-        return bool(beyond or self.scaled.every_constraint or self.wanted.keep_out)
+        return bool(self.freedom or self.wanted.keep_out)
 
     @cached_property
     def kinds(self) -> list[tuple[Family, bool]]:
@@ -96,6 +109,19 @@ class LimitPositions(DesignFinder):
             return None
         return self._round(self._anywhere(enough * size, rng))
 
+    def onward(self, designs: Sequence[Candidate], misses: Sequence[Candidate] = (), /) -> Sequence[Start]:
+        """Starts at the best designs, else the nearest misses, where a programme may improve them."""
+        starts, ways = list[Start](), Counter[tuple[int, complex]]()
+        for each in [*designs, *misses] if self.freedom else []:
+            if "exact" in {defect.requirement for defect in each.verdict.defects}:
+                continue
+            start = Start.of_linkage(self.scaled, each.linkage, each.verdict)
+            bend = np.exp(1j * (start.theta3[0] - start.theta2[0]))  # stretched or folded, of rods to a side
+            way = start.assembly, complex(np.round(bend))
+            starts += [start] * (ways[way] < _ONWARD)
+            ways[way] += 1
+        return starts
+
     def relaxed(self, _rng: np.random.Generator) -> list[Start]:
         """The members that miss the limits by the least amount."""
         return self._closest([(family, stretches(family)) for family, _ in self.kinds])
@@ -105,7 +131,8 @@ class LimitPositions(DesignFinder):
         if key in UNSMOOTH:
             return []
         asked = LimitPositions(required)
-        starts = self._chosen(_MANY) + self._anywhere(_MANY, rng) if asked.elsewhere else []
+        starts = self._anywhere(_MANY, rng) if asked.elsewhere else []
+        starts += self._chosen(_MANY)[: _FIRST if self.freedom else None] if asked.elsewhere else []
         return starts + asked._closest(self._stretches) + asked._closest(self._stretches, self)
 
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
@@ -149,6 +176,8 @@ class LimitPositions(DesignFinder):
                 shares = np.concatenate([np.linspace(low, high, _SAMPLES) for low, high in within])
                 groups.append(family(shares))
         best = sorted(starts, key=lambda start: -self.stroke_kind.worst(start))
+        if self.freedom:
+            return best + [one for group in groups for one in self._starts(group[:: len(group) // _EACH])]
         if self.elsewhere:  # rounds of members anywhere follow
             return [one for one in best + self._spread(groups, _FIRST) if self._in_boxes(one)]
         return best + self._spread(groups, round(_SPARE * enough))
@@ -178,19 +207,28 @@ class LimitPositions(DesignFinder):
         return [self._start(members[k : k + 1], points[k : k + 1]) for k in range(len(members))]
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> list[Start]:
-        """Linkages of random scale, place and handedness: those that keep all limits, then some others."""
-        places = [self._placed(members, rng) for members in self._drawn(rng)]
-        if not places:
-            return []
-        screened = self._screened(*map(np.concatenate, zip(*places, strict=True)))
-        feasible = screened.feasible
-        missed = np.where(feasible, np.inf, screened.violations.sum(axis=1))
-        chosen = [
-            *np.flatnonzero(feasible)[:count],
-            *np.argsort(missed)[: min(_MISSING, int((~feasible).sum()))],
-        ]
-        starts = [Start.of_screened(screened, int(k), self.scaled.objective) for k in chosen]
-        return [start.under(settled=True) for start in starts]
+        """Members anywhere that keep all limits, then some others, from which a programme moves the least."""
+        inside, outside = list[list[Start]](), list[Start]()
+        groups = self.near(rng)
+        for screened in groups:
+            feasible = screened.feasible
+            missed = np.where(feasible, np.inf, screened.violations.sum(axis=1))
+            closest = np.argsort(missed)[: min(_MISSING // len(groups), int((~feasible).sum()))]
+            within, beyond = (
+                [
+                    Start.of_screened(screened, k, self.scaled.objective).under(settled=True)
+                    for k in rows.tolist()
+                ]
+                for rows in (np.flatnonzero(feasible)[:count], closest)
+            )
+            inside.append(within)
+            outside += [start.under(stay=self.freedom) for start in beyond]
+        in_turn = [start for each in zip_longest(*inside) for start in each if start is not None]
+        return in_turn[:count] + outside
+
+    def near(self, rng: np.random.Generator, /) -> list[Screened]:
+        """Members of each family, and their mirror images, of random scale and place, screened."""
+        return [self._screened(*self._placed(members, rng)) for members in self._drawn(rng)]
 
     def _placed(self, members: StrokeLinkages, rng: np.random.Generator) -> _Positions:
         """O2, O4, A and B in the limit positions (n, 2) and theta2 there, anywhere, in the frame."""
@@ -215,8 +253,7 @@ class LimitPositions(DesignFinder):
     @property
     def _room(self) -> Box:
         """Room for an unbounded O2: about the required places."""
-        wanted = self.wanted
-        boxes = [box for box in (wanted.a, wanted.b, wanted.o4) if box is not None]
+        wanted, boxes = self.wanted, stated_places(replace(self.wanted, o2=None))
         sides = []
         for axis, name in enumerate("xy"):
             ends = [end for box in boxes for end in getattr(box, name) if np.isfinite(end)]

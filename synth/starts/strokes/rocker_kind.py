@@ -112,7 +112,7 @@ class RockerKind(StrokeKind):
 
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
         families = families_of(self.task.swing, self.task.time_ratio)
-        if self.wanted.theta2_start_deg is None:
+        if self.wanted.theta2_start_deg is None and not elsewhere:
             return [(family, False) for family in families]
         return [each for family in families for each in ((family, False), (partial(mirrored, family), True))]
 

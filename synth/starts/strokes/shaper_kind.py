@@ -23,6 +23,7 @@ class ShaperKind(RockerKind):
     """Of any scale, as crank-rockers; their time ratio follows from the swing."""
 
     what: ClassVar[str] = "crank-shapers"
+    advised: ClassVar[str] = ""
     dyad: ClassVar[type[ClosingDyad]] = Block
     kept: ClassVar[frozenset[str]] = KEPT | {"r1", "o4", "offset", "ground_angle_deg", "output_swing_deg"}
     mirrored: ClassVar[tuple[bool, ...]] = (False,)  # that is a family of its own

@@ -19,7 +19,6 @@ _DIRECTIONS = 72  # of a slide that may have any, tried at first
 _CLOSER, _STEPS = 3, 8  # refinements of the grid, and their steps to each side
 _NEARLY = 0.05  # strokes
 _ROUNDING = 1e-12  # strokes
-_ONE_STROKE = 1e-12  # rad: strokes that differ by less take equally long
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,13 +97,6 @@ class SliderKind(StrokeKind):
     def worst(self, start: Start) -> float:
         _, r2, r3, offset = start.lengths
         return float(np.arccos(min((r2 + abs(offset)) / r3, 1.0)))
-
-    def ends(self, members: StrokeLinkages) -> tuple[FloatArray, FloatArray]:
-        """Of strokes that take equally long, the one from the stretched position counts as the slow one."""
-        if self.clockwise and lag_of(self.task.time_ratio) <= _ONE_STROKE:
-            return members.first, members.last - TURN
-        first, last = members.first, members.last
-        return (last, first) if self.clockwise else (first, last)
 
     @property
     def _boxed(self) -> bool:

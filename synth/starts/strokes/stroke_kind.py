@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 
 from grashof.problems import Box, Requirements, Rotatability, Task
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.problems.values.tasks.stroke_task import EVEN
 from grashof.synth.loop.dyad import ClosingDyad
 from grashof.synth.programme.start import Start
-from grashof.synth.theory.limit_positions import Family, StrokeLinkages
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages, lag_of
 
 POSITIONS = 73  # of a turn, for the size
 # Fields that every kind keeps by itself.
@@ -34,9 +35,7 @@ class StrokeKind(ABC):
     wanted: Requirements  # resolved, in the problem's unit
 
     what: ClassVar[str]  # the linkages, in words
-    advised: ClassVar[str] = (
-        ""  # a word for the stroke, where the time ratio determines its best transmission
-    )
+    advised: ClassVar[str] = ""  # a word for the stroke, where the time ratio limits its transmission
     dyad: ClassVar[type[ClosingDyad]]
     line: ClassVar[str] = "ground_angle_deg"  # the field that turns the ground line, or the slide
     kept: ClassVar[frozenset[str]] = KEPT  # fields that families and places keep
@@ -118,8 +117,13 @@ class StrokeKind(ABC):
         """Worst transmission angle over the turn, rad, by the sizes of a start."""
 
     def ends(self, members: StrokeLinkages) -> tuple[FloatArray, FloatArray]:
-        """Driver angles at the beginning and at the end of the slow stroke, each (n,), rad."""
+        """Driver angles at the beginning and at the end of the slow stroke, each (n,), rad.
+
+        Of strokes that take equally long, the one from the stretched position counts as the slow one.
+        """
         first, last = members.first, members.last
+        if self.clockwise and lag_of(self.task.time_ratio) <= EVEN:
+            return first, last - TURN
         return (last, first) if self.clockwise else (first, last)
 
 

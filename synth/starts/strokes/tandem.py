@@ -14,7 +14,7 @@ from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.finder import ROUNDS_DONE, DesignFinder
 from grashof.synth.starts.strokes.tandem_numbers import numbers_of
 from grashof.synth.starts.strokes.tandem_search import (
     GENERATIONS,
@@ -39,7 +39,7 @@ class TandemRockers(DesignFinder):
     """Watt II linkages with two swings, the best first."""
 
     beginning: ClassVar[str] = "looking for linkages with both swings"
-    exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
+    exhausted: ClassVar[str] = ROUNDS_DONE
 
     @cached_property
     def aim(self) -> TandemAim:

@@ -5,7 +5,7 @@ import pytest
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.measures import Values
-from grashof.problems import FourBar, Problem, Requirements, StrokeTask
+from grashof.problems import Box, FourBar, Problem, Requirements, StrokeTask, TargetLimits
 
 NORTON = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
 TASK = StrokeTask.from_degrees(swing_deg=73.78177, time_ratio=1.355573)
@@ -44,6 +44,51 @@ def test_targets_are_where_driver_and_coupler_are_in_line(assembly: int, sense: 
     assert -np.pi < verdict.theta2[0] <= np.pi
     slow = verdict.direction * float(np.diff(verdict.theta2)[0])
     assert slow == pytest.approx(TASK.driver_rotation, abs=1e-5)
+
+
+def stands(end: int) -> tuple[complex, complex]:
+    """A and B in the stretched (0) and in the folded position (1), by the triangle O2-B-O4."""
+    far = 160 if end == 0 else 80
+    along = (far**2 + 100**2 - 80**2) / 200
+    ahead = (along + 1j * np.sqrt(far**2 - along**2)) / far
+    return (1 - 2 * end) * 40 * ahead, far * ahead
+
+
+@pytest.mark.parametrize("kept", [True, False])
+@pytest.mark.parametrize("sense", ["ccw", "cw"])
+@pytest.mark.parametrize("target", [1, 2])
+@pytest.mark.parametrize("name", ["a", "b", "distances", "coupler_angle_deg", "transmission_min_deg"])
+def test_limits_hold_in_the_limit_position_that_is_named(
+    name: str, target: int, sense: str, kept: bool
+) -> None:
+    """The slow stroke begins stretched where the driver turns counter-clockwise, else folded."""
+    a, b = stands(target - 1 if sense == "ccw" else 2 - target)
+    by = 1e-6 if kept else -1e-6
+    mu = np.degrees(abs(np.angle((b - a) / (b - 100))))
+    coupler = float(np.degrees(np.angle(b - a)))
+    given = {
+        "a": Box(x=(a.real - by, np.inf)),
+        "b": Box(y=(-np.inf, b.imag + by)),
+        "distances": {"a-o4": (abs(a - 100) - by, 1e6)},
+        "coupler_angle_deg": (coupler - 50, coupler + by),
+        "transmission_min_deg": float(min(mu, 180 - mu)) - by,
+    }
+    at = (TargetLimits(targets=[target], **{name: given[name]}),)
+    wanted = Requirements(tolerance=1e-5, driver_sense=sense, at=at)
+    verdict = verify(NORTON, TASK, wanted)
+    assert [each.requirement for each in verdict.defects] == ([] if kept else ["at"])
+    assert all(f"at target {target}" in each.what for each in verdict.defects)
+
+
+@pytest.mark.parametrize("sense", ["ccw", "cw"])
+def test_of_strokes_that_take_equally_long_the_first_begins_stretched(sense: str) -> None:
+    swing, share = np.radians(60), 0.3
+    r4 = share / np.sin(swing / 2)  # half the chord of B is r2
+    even = FourBar(o2=(0, 0), o4=(float(np.hypot(1, r4 * np.cos(swing / 2))), 0), r2=share, r3=1, r4=r4)
+    verdict = verify(even, StrokeTask(swing=float(swing)), Requirements(driver_sense=sense))
+    assert verdict.ok
+    state = solve_position(even, verdict.theta2)
+    assert np.cos(state.theta3 - verdict.theta2) == pytest.approx([1, -1])
 
 
 @pytest.mark.parametrize(

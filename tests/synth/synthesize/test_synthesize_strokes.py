@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from known_designs import SLIDES
+from stroke_results import found, worst
 
 from grashof.analysis import verify
 from grashof.problems import (
@@ -20,16 +21,6 @@ from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Result, synthesize
 from grashof.synth.theory.limit_positions import best_transmission
-
-
-def found(swing_deg: float = 80, time_ratio: float = 10 / 9, tables: Any = None, **wanted: Any) -> Result:
-    stroke = {"swing_deg": swing_deg, "time_ratio": time_ratio}
-    document = {"kind": "stroke", "stroke": stroke, "requirements": wanted, **(tables or {})}
-    return synthesize(problem_from(document, "stroke"), enough=8)
-
-
-def worst(result: Result) -> np.ndarray:
-    return np.degrees([each.verdict.transmission_min_cycle for each in result.candidates])
 
 
 @pytest.mark.slow

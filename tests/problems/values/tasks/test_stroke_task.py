@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 from refusals import refusal, rows
 
-from grashof.problems import Box, Problem, Requirements, StrokeTask
+from grashof.problems import (
+    Box,
+    DwellTask,
+    LinkSwing,
+    Problem,
+    Requirements,
+    StrokeTask,
+    TandemTask,
+    TargetLimits,
+    Task,
+)
 
 
 def test_two_limit_positions_without_a_place() -> None:
@@ -34,7 +44,10 @@ def test_a_stroke_is_the_size() -> None:
         ({"r1": (120, 120)}, 120.0),
         ({"link_length": (10, 200)}, 200.0),
         ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3), (4, 4))}, 5.0),
-        ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3))}, 1.0),
+        ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3))}, 3.0),
+        ({"distances": {"a-o4": (2, 4)}}, 4.0),
+        ({"at": (TargetLimits(targets=[2], distances={"a-o4": (2, 1e6)}),)}, 20.0),
+        ({"o2": Box((0, 0), (0, 0)), "at": (TargetLimits(targets=[1], a=Box((2, 3), (3, 4))),)}, 5.0),
     ],
 )
 def test_a_free_scale_is_taken_from_limits(wanted: dict[str, Any], size: float) -> None:
@@ -97,6 +110,45 @@ def test_requirements_that_do_not_apply(wanted: dict[str, Any], said: str) -> No
     line = refusal(Problem, task=task, requirements=Requirements(**wanted))
     assert line.startswith(said)
     assert "\n" not in line
+
+
+AT = r"""
+targets = [3]\ntransmission_min_deg = 30 | requirements.at[0].targets has 3; the last target is 2
+targets = [1]\npast_deg = [2, 5] | <NOT>past_deg<WITH> driver and coupler are in line
+targets = [1]\ncoupler_rate = [0, 1] | <NOT>coupler_rate<WITH>
+    it follows from lengths, r2/r3; limit link_ratios
+targets = [2]\nmechanical_advantage_min = 2 | <NOT>mechanical_advantage_min<WITH> the advantage is infinite
+"""
+WITH = " does not go with a stroke; in a limit position"
+
+
+@pytest.mark.parametrize(("stated", "said"), rows(AT, NOT="requirements.at[0].", WITH=WITH))
+def test_limits_that_say_nothing_in_limit_positions_are_refused_in_a_line(stated: str, said: str) -> None:
+    task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.1)
+    wanted = Requirements(at=(TargetLimits(**tomllib.loads(stated)),))
+    assert refusal(Problem, task=task, requirements=wanted) == said
+
+
+def test_a_centre_in_a_limit_position_is_a_place_of_b() -> None:
+    task, single = StrokeTask(swing=1.0), TargetLimits(targets=[1], instant_centre=Box(x=(0, 1)))
+    line = refusal(Problem, task=task, requirements=Requirements(at=(single,)))
+    assert line.endswith("instant_centre does not go with a stroke; in a limit position that is B; limit b")
+
+
+@pytest.mark.parametrize(
+    ("task", "word"),
+    [
+        (DwellTask.from_degrees(dwell_deg=60, swing_deg=30), 'kind = "dwell"'),
+        (TandemTask([LinkSwing(4, 1.0), LinkSwing(6, 1.0)]), 'kind = "stroke" with two outputs'),
+    ],
+)
+def test_single_targets_of_dwells_and_of_two_outputs_have_no_limits(task: Task, word: str) -> None:
+    wanted = Requirements(at=(TargetLimits(targets=[1], transmission_min_deg=30),))
+    line = refusal(Problem, task=task, requirements=wanted)
+    assert line == (
+        f"requirements.at[0] does not go with {word}; "
+        "it needs poses, points, pairs of a function or the limit positions of one stroke"
+    )
 
 
 def test_a_large_tolerance_is_not_a_zone() -> None:

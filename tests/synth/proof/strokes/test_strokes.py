@@ -95,6 +95,7 @@ def test_places_are_left_out_unless_any_linkage_can_be_put_there() -> None:
     assert named(slide(o2=[3, 4], a={"x": [0, 9]})) == ("o2", "a")
     assert named(slide(keep_out=[[[-9, -9], [9, -9], [0, 9]]])) == ("keep_out",)
     assert named(slide(size=[0, 2])) == ("size",)
+    assert named(slide(at=[{"targets": [1], "b": {"x": [0, 1]}}])) == ("at",)
 
 
 def test_where_places_are_in_the_way_the_bound_holds() -> None:
@@ -105,6 +106,8 @@ def test_where_places_are_in_the_way_the_bound_holds() -> None:
     assert (proof.claim, proof.lower) == (Claim.BOUND, None)
     assert proof_line(result).endswith("47.22 deg (without slide_angle_deg and theta2_start_deg).")
     assert proof_for(slide(b={"x": [0, 1], "y": [0, 0]})).claim is Claim.BEST
+    bound = proof_for(slide(at=[{"targets": [2], "distances": {"b-o2": [0.9, 1.6]}}]))
+    assert (bound.claim, bound.left_out) == (Claim.BOUND, ("at",))
 
 
 def test_an_objective_without_the_transmission_angle_is_refused_unless_there_is_none() -> None:
