@@ -23,7 +23,7 @@ from grashof.synth.theory.stopping import stop_requested
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 ROUGH, ROUGH_STEPS = 13, 7  # samples of the range for the first steps of least squares, and their number
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
-STRONG = (0.1, 1.0, 10.0)  # the same where more than the shape is limited
+STRONG = (1.0, 10.0)  # the same where more than the shape is limited
 BASINS, TRIED, SHORT = 12, 30, 5  # starts that are refined, and those tried in few steps
 LONG = 180  # steps where more than the shape is limited: valleys are narrow
 EARLY = 12  # steps after which those that have become alike are refined no further
@@ -102,14 +102,14 @@ class Optima:
         """The output that is fitted."""
         return self.aims.pairs(self.sense) if self.by_pairs else self.aims.samples(self.sense)
 
-    def _near(self, desired: DesiredOutput, rng: np.random.Generator) -> Generators:
-        """Generators near the desired output."""
+    def _near(self, desired: DesiredOutput, rng: np.random.Generator, stride: int = 1) -> Generators:
+        """Generators near the desired output, or one in `stride` of them."""
         if self.aims.triangle is not None:
-            return driven_starts(self.aims, desired, rng, 1.0)
+            return driven_starts(self.aims, desired, rng, 1 / stride)
         near = function_starts(self.aims.kind, desired, rng, self.first)
         if self.limits.beyond_shape and self.first is None:
             near = near.joined([near, anywhere(self.aims.kind, desired, rng)])
-        return self._placed(near)
+        return self._placed(near[::stride])
 
     def _placed(self, starts: Generators) -> Generators:
         """Starts in places that suit their limits."""
@@ -134,7 +134,7 @@ class Optima:
         """A good optimum from few starts, if any: there usually is one, before the search has begun."""
         aim = self.aim()
         desired, held = aim.desired, self.first is not None
-        starts = self._near(desired, np.random.default_rng(0))[::SPARSE]
+        starts = self._near(desired, np.random.default_rng(0), SPARSE)
         batch, square = fitted(desired, starts, self.limits.of, pull=PULLS[0], held=held, steps=QUICK_STEPS)
         tried = refined(aim, batch[best_apart(batch, square, CELL)[:FIRST]], SHORT)
         best = tried.generators[np.argsort(tried.worth, kind="stable")[:1]]

@@ -205,9 +205,8 @@ class _Linear:
         best, least = shape.copy(), score.copy()
         centred = self.slopes - self.slopes.mean(axis=1, keepdims=True)
         predicted, kept = self.errors + times(self.slopes, moved), self.limits + times(self.by_shape, moved)
-        scale = np.einsum("mnk,mnk->m", centred, centred)
         turned = centred.swapaxes(1, 2)
-        normal = turned @ centred + 1e-8 * np.maximum(scale, 1e-280)[:, None, None] * np.eye(shape.shape[1])
+        normal = _damped(turned @ centred, 1e-8)
         going, far = np.arange(len(shape)), np.abs(moved).max(axis=1, keepdims=True)
         for _ in range(CORRECTIONS):
             strayed = errors - predicted[going]
@@ -221,7 +220,7 @@ class _Linear:
             pulled = by_shape.swapaxes(1, 2)
             side = times(turned[going], strayed - strayed.mean(axis=1, keepdims=True))
             side += times(pulled, _HEAVY * np.where(active, off, 0.0))
-            step = np.linalg.solve(normal[going] + pulled @ by_shape, side[..., None])[..., 0]
+            step = np.linalg.solve(_damped(normal[going] + pulled @ by_shape, 1e-14), side[..., None])[..., 0]
             longest = np.abs(step).max(axis=1, keepdims=True)
             step *= np.minimum(1.0, far[going] / np.maximum(longest, 1e-300))  # a correction is no longer
             shape[going] -= step
@@ -290,6 +289,13 @@ class _Linear:
         right = np.concatenate([right + missed[:, None], np.ones((count, 2 * unknowns))], axis=1)
         moved = least_square(matrix, side, rows, right, start)
         return moved.clip(-1, 1) * radius[:, None] * self.aim.free(self.about)
+
+
+def _damped(normal: FloatArray, share: float) -> FloatArray:
+    """Normal matrices (M, K, K) with a share of their size on their diagonals, so that none is singular."""
+    size = np.maximum(np.einsum("mkk->m", normal), 1e-280)
+    damped: FloatArray = normal + share * size[:, None, None] * np.eye(normal.shape[1])
+    return damped
 
 
 def with_extremes(aim: Aim, batch: Generators, turned: FloatArray, output: FloatArray) -> Aim:
