@@ -40,7 +40,7 @@ class TargetLimits:
         the 41 Chebyshev-Lobatto points. Of a stroke 1 is the limit position in which the slow stroke begins,
         2 the one in which it ends; the driver turns counter-clockwise unless `driver_sense` is "cw", and of
         strokes that take equally long the one from the stretched position counts as the slow one. There
-        `past_deg`, `instant_centre`, `coupler_rate` and `mechanical_advantage_min` say nothing.
+        `past_deg`, `instant_centre`, `coupler_rate` and `mechanical_advantage_min` are refused.
     a, b : Box or Region, optional
         Where this moving pivot may be there.
     instant_centre : Box, optional
@@ -198,7 +198,7 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "mechanical_advantage_min": _number(0.0, 1e6),
 }
 LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name not in ("targets", "links"))
-# Limits that say nothing in limit positions, and why.
+# Limits that have no meaning of their own in limit positions, and why.
 _IN_LINE = {
     "past_deg": "driver and coupler are in line",
     "instant_centre": "that is B; limit b",
