@@ -39,11 +39,16 @@ def effort_of_design(
 
 
 def effort_defects(case: EffortCase, problem: Problem) -> list[Defect]:
-    """Strokes that end inside the travel, angles of the effort beyond it, and ends outside their areas."""
+    """Strokes that end inside the travel, angles beyond it, parts too many or few, ends outside areas."""
     found = [Defect(*miss) for miss in effort_figures(case).misses]
     asked = None if problem.dynamics is None else problem.dynamics.effort
-    areas = () if asked is None else asked.parts
-    for index, (part, area) in enumerate(zip(case.spec.parts, areas, strict=False)):
+    if asked is None:
+        return found
+    parts, areas = case.spec.parts, asked.parts
+    if (off := abs(len(parts) - len(areas))) > 0:
+        what = "the number of struts and springs"
+        found.append(Defect("effort.parts", what, len(parts), str(len(areas)), float(off)))
+    for index, (part, area) in enumerate(zip(parts, areas, strict=False)):
         for end, pair in enumerate(zip(part.places, area.places, strict=False)):
             key = f"effort.parts[{index}].between[{end}]"
             found += _outside(key, case.linkage, *pair, problem.task.size)

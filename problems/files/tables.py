@@ -181,7 +181,8 @@ def _placed(line: str, path: str) -> str:
     table, dot, key = path.rpartition(".")
     if line.startswith(path):
         return line
-    return f"{table}{dot}{line}" if line.startswith((f"{key}:", f"{key} ", f"{key}[")) else f"{path}.{line}"
+    named = tuple(key + after for after in ": [.")
+    return f"{table}{dot}{line}" if line.startswith(named) else f"{path}.{line}"
 
 
 def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:

@@ -14,6 +14,10 @@ from grashof.synth.effort.placing import placed
 from grashof.synth.theory.stopping import overdue
 
 _OF_PARTS = "effort.parts"
+_NO_SIZE = (
+    "no size of effort.parts lasts the travel between places in their areas; widen the areas, or add sizes "
+    "with other strokes"
+)
 _PLACED = {1: 24, 2: 6}  # number of designs of a list that get parts, by the number of parts
 
 
@@ -24,6 +28,14 @@ def with_best_parts(designs: Sequence[Candidate]) -> tuple[Candidate, ...]:
         return tuple(designs)
     count = _PLACED.get(len(dynamics.effort.parts), len(designs))
     return tuple(with_parts(each) if k < count and not overdue() else each for k, each in enumerate(designs))
+
+
+def why_without(designs: Sequence[Candidate]) -> str:
+    """Why no design of a list got struts or springs; empty where some did."""
+    if any(each.verdict.effort is not None for each in designs):
+        return ""
+    why = "the time limit left no time to place them" if overdue() else _NO_SIZE
+    return f"the designs have no struts or springs: {why}"
 
 
 def with_parts(candidate: Candidate, known: Sequence[PartSpec] = ()) -> Candidate:
@@ -72,8 +84,5 @@ def place_parts(spec: LinkageSpec) -> LinkageSpec:
         return spec
     found = placed(case)
     if found is None:
-        raise ProblemError(
-            f"{spec.name}: no size of effort.parts lasts the travel between places in their areas; widen the "
-            "areas, or add sizes with other strokes"
-        )
+        raise ProblemError(f"{spec.name}: {_NO_SIZE}")
     return replace(spec, dynamics=replace(spec.dynamics, effort=found))

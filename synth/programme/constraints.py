@@ -279,8 +279,7 @@ def require_own(
     for constraint in constraints:
         design = symbolic_design(build, form, x, places)
         if isinstance(constraint, AtTarget) and build.slack is None:
-            size = build.parameter(lambda scaled, _: scaled.frame.scale)
-            build.zero(*(each / size for each in on_symbols(constraint.fixed, design)))
+            build.zero(*on_symbols(constraint.fixed, design))
             value = on_symbols(constraint.free, design)
         else:
             value = on_symbols(constraint, design)

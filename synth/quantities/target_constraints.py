@@ -29,6 +29,7 @@ class AtTarget:
     limits: TargetLimits
     name: str
     k: int
+    size: float = 1.0  # the unit of excess and of fixed numbers that are lengths
     group: ClassVar[str] = "at"  # the requirement that it belongs to
 
     @property
@@ -36,11 +37,11 @@ class AtTarget:
         return f"{self.name} at target {self.k + 1}"
 
     def __call__(self, design: Design) -> Any:
-        """Excess over the limits: a length, or without a unit."""
+        """Excess over the limits, of lengths in sizes."""
         if self.name in _EXCESS:
             excess = _EXCESS[self.name](self, design)
             return excess if isinstance(excess, list) else [excess]
-        return [over for value, limits in self.numbers(design) for over in _beyond(value, *limits)]
+        return [over for number in self._sized(design) for over in _beyond(*number)]
 
     def numbers(self, design: Design) -> list[tuple[Any, Limits]]:
         """Numbers that have limits, lengths; none of limits of other kinds."""
@@ -55,16 +56,23 @@ class AtTarget:
         sides = [(place[0], limited.x), (place[1], limited.y)]
         return sides + [(_along(place, row[0]), row[1]) for row in _hull(limited)]
 
+    def _sized(self, design: Design) -> list[tuple[Any, float, float]]:
+        """Numbers with both their limits, sizes."""
+        return [
+            (value / self.size, low / self.size, high / self.size)
+            for value, (low, high) in self.numbers(design)
+        ]
+
     def fixed(self, design: Design) -> list[Any]:
-        """Fixed numbers less their values."""
-        return [value - low for value, (low, high) in self.numbers(design) if low == high]
+        """Fixed numbers less their values, sizes."""
+        return [value - low for value, low, high in self._sized(design) if low == high]
 
     def free(self, design: Design) -> list[Any]:
         """Excess over the other limits."""
         if self.name in _EXCESS:
             return self(design)  # type: ignore[no-any-return]
-        numbers = ((value, limits) for value, limits in self.numbers(design) if limits[0] < limits[1])
-        return [over for value, limits in numbers for over in _beyond(value, *limits)]
+        numbers = (number for number in self._sized(design) if number[1] < number[2])
+        return [over for number in numbers for over in _beyond(*number)]
 
     def past(self, design: Design) -> Any:
         """By the side of the line on which the motion from, or to, the other end begins."""
@@ -137,7 +145,7 @@ _EXCESS: dict[str, Any] = {
 def target_constraints(problem: Problem) -> tuple[AtTarget, ...]:
     """Those of all limits of a problem at single targets."""
     return tuple(
-        AtTarget(limits, name, number - 1)
+        AtTarget(limits, name, number - 1, problem.task.size)
         for limits in problem.requirements.at
         for name, number in product(limits.limited, limits.targets)
     )

@@ -42,6 +42,7 @@ def conclude(
         _LOG.info("explanation: %s", note)
     problem, ledger = scaled.problem, ledgers[-1]
     designs = _with_parts(listed(problem, found))
+    note = note or _advice(problem, designs)
     run.ended()
     if atlas is not None:
         regions = atlas.regions_of(scaled, designs)
@@ -87,7 +88,7 @@ def conclude(
         nearest=nearest,
         tally=ledger.tally,
         seconds=seconds,
-        note=note or (_advice(problem) if designs else ""),
+        note=note,
         complete=ledger.complete,
         ended=ended,
         least_error=least_error(scaled, ledger),
@@ -118,8 +119,13 @@ def _with_parts(designs: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     return with_best_parts(designs)
 
 
-def _advice(problem: Problem) -> str:
-    if not problem.task.at_limits:
+def _advice(problem: Problem, designs: tuple[Candidate, ...]) -> str:
+    """A note on a list: why its strokes transmit badly, or why its designs have no struts."""
+    if designs and problem.states(Needs.EFFORT):
+        from grashof.synth.designs.efforts import why_without
+
+        return why_without(designs)
+    if not designs or not problem.task.at_limits:
         return ""
     from grashof.synth.results.explain import advice
 

@@ -245,6 +245,8 @@ def _count(count: object, where: str) -> int:
 def _joint(between: object) -> tuple[int, int]:
     links = tuple(between) if isinstance(between, Sequence) else ()
     if links not in ANY_JOINTS:
+        if any(isinstance(each, EffortPlace) for each in links):
+            raise ProblemError("between has places; of a torsion spring it must be two links, such as [1, 4]")
         raise wrong_value("between", list(links), "two links of a joint, such as [1, 4]")
     return links[0], links[1]
 

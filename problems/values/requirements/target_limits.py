@@ -8,7 +8,7 @@ from typing import Any
 
 from grashof.problems.values import checks
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.box import Box
+from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import not_had
@@ -40,7 +40,7 @@ class TargetLimits:
         the 41 Chebyshev-Lobatto points. Of a stroke 1 is the limit position in which the slow stroke begins,
         2 the one in which it ends; the driver turns counter-clockwise unless `driver_sense` is "cw", and of
         strokes that take equally long the one from the stretched position counts as the slow one. There
-        `past_deg`, `instant_centre`, `coupler_rate` and `mechanical_advantage_min` say nothing.
+        `past_deg`, `instant_centre`, `coupler_rate` and `mechanical_advantage_min` are refused.
     a, b : Box or Region, optional
         Where this moving pivot may be there.
     instant_centre : Box, optional
@@ -145,7 +145,7 @@ def _kinds_with(name: str) -> list[str]:
 def _targets(values: Sequence[int], where: str) -> tuple[int, ...]:
     if isinstance(values, (str, bytes)) or not isinstance(values, Sequence) or not len(values):
         raise wrong_value(where, values, "a list of numbers of targets, counted from 1")
-    return tuple(checks.each_checked(values, where, _target))
+    return tuple(dict.fromkeys(checks.each_checked(values, where, _target)))
 
 
 def _links(names: Sequence[str], where: str) -> tuple[str, ...]:
@@ -168,6 +168,8 @@ def _target(number: int, where: str) -> int:
 def _box(value: Any, where: str) -> Box | None:
     if value is not None and not isinstance(value, Box):
         raise wrong_value(where, value, "a Box or a Region")
+    if value == ANYWHERE:
+        raise ProblemError(f"{where} limits neither x nor y; give one of them a finite side")
     return value
 
 
@@ -196,12 +198,12 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "mechanical_advantage_min": _number(0.0, 1e6),
 }
 LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name not in ("targets", "links"))
-# Points and lengths without which a limit has no meaning; of those not named here r3 and r4.
-# Limits that say nothing in limit positions, and why.
+# Limits that have no meaning of their own in limit positions, and why.
 _IN_LINE = {
     "past_deg": "driver and coupler are in line",
     "instant_centre": "that is B; limit b",
     "coupler_rate": "it follows from lengths, r2/r3; limit link_ratios",
     "mechanical_advantage_min": "the advantage is infinite",
 }
+# Points and lengths without which a limit has no meaning; of those not named here r3 and r4.
 _NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}, "coupler_angle_deg": {"a"}, "coupler_rate": {"a"}}

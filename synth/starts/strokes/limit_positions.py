@@ -116,7 +116,8 @@ class LimitPositions(DesignFinder):
             if "exact" in {defect.requirement for defect in each.verdict.defects}:
                 continue
             start = Start.of_linkage(self.scaled, each.linkage, each.verdict)
-            bend = np.exp(1j * (start.theta3[0] - start.theta2[0]))  # stretched or folded, of rods to a side
+            # Stretched or folded; of a rod in a block, its side.
+            bend = np.exp(1j * (start.theta3[0] - start.theta2[0]))
             way = start.assembly, complex(np.round(bend))
             starts += [start] * (ways[way] < _ONWARD)
             ways[way] += 1

@@ -10,7 +10,7 @@ from grashof.synth.theory.functions.linear_programmes import least_linear, times
 _STEPS = 80  # most of them; where they run out the point that was reached meets the inequalities, too
 _DAMPING = 1e-13  # share of the squares: unknowns that nothing depends on stay
 _RATE = 1e-12  # least rate at which an inequality is approached
-_PRICE = 1e-13  # an inequality with a price above minus this holds rightly
+_PRICE = 1e-13  # an inequality with a price above minus this is rightly held
 _MISSED = 1e-10  # inequalities missed by less are not brought nearer
 
 

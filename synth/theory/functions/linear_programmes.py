@@ -7,7 +7,7 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, IntArray
 
 _PIVOTS = 80  # most of them; where they run out the vertex that was reached is feasible, too
-_DUAL = 1e-9  # a constraint with a price above minus this holds rightly
+_DUAL = 1e-9  # a constraint with a price above minus this is rightly held
 _PIVOT = 1e-9  # least rate at which a constraint is approached
 
 

@@ -151,6 +151,8 @@ def test_the_polygon_of_an_end_may_be_drawn(tmp_path: Path) -> None:
          "it must be { x = …, y = … }, each a number or [lo, hi]"),
         (EFFORT + PART.replace("gas", "torsion") + "between = [1, 4]\n",
          "effort.parts[0].free_angle_deg is missing; a torsion spring needs it"),
+        (EFFORT + PART.replace("gas", "torsion") + BETWEEN,
+         "effort.parts[0].between has places; of a torsion spring it must be two links, such as [1, 4]"),
         (EFFORT + PART + BETWEEN + SIZE.replace("stroke = 100", "stroke = 300"),
          "effort.parts[0].sizes[0].stroke is 300; it must be less than extended, 273"),
         (EFFORT + 3 * (PART + BETWEEN + SIZE), "effort.parts is [{"),

@@ -332,6 +332,13 @@ def test_impossible_regions_are_refused_in_a_line(text: str, line: str) -> None:
     assert message(f"{MOTION}[requirements]\no2 = {{ {text} }}\n") == line
 
 
+def test_a_distance_at_a_target_is_refused_by_its_full_key() -> None:
+    at = "at = [{ targets = [1], distances = { a-o4 = [5, 2] } }]"
+    assert message(f"{MOTION}[requirements]\n{at}\n") == (
+        "requirements.at[0].distances.a-o4 is [5, 2]: lo exceeds hi; it must be [lo, hi] with lo <= hi"
+    )
+
+
 def test_regions_at_single_targets_and_of_cylinders() -> None:
     edge = "{ on = [[0, 0], [4, 2]] }"
     at = problem(f"{MOTION}[requirements]\nat = [{{ targets = [2], a = {edge} }}]\n").requirements.at

@@ -13,7 +13,7 @@ from grashof.problems import Box, LinkageSpec, Region, load_linkage_spec
 from grashof.problems.files.linkage_writing import linkage_toml
 from grashof.problems.values.dynamics.struts import EffortPlace
 from grashof.synth import Candidate, Result, place_parts
-from grashof.synth.designs.efforts import with_parts
+from grashof.synth.designs.efforts import why_without, with_best_parts, with_parts
 from grashof.wording.problem import judged_for, verdict_lines
 
 
@@ -37,6 +37,24 @@ def test_each_design_has_its_struts(result: Result) -> None:
     row = result.to_frame().iloc[0]
     assert row["part_sizes"].startswith("2 x gas ")
     assert row["effort_deviation"] == 0
+
+
+def test_a_list_without_struts_says_why(result: Result, best: Candidate) -> None:
+    assert why_without(result.candidates) == result.note == ""
+    dynamics = best.problem.dynamics
+    assert dynamics is not None
+    assert dynamics.effort is not None
+    (part,) = dynamics.effort.parts
+    far = replace(
+        part,
+        between=(EffortPlace(link=1, at=Region(inside=[[9e3, 0], [9.1e3, 0], [9e3, 50]])), part.places[1]),
+    )
+    problem = replace(best.problem, dynamics=replace(dynamics, effort=replace(dynamics.effort, parts=(far,))))
+    bare = replace(best, problem=problem, verdict=replace(best.verdict, effort=None))
+    (design,) = with_best_parts([bare])
+    assert design.verdict.effort is None
+    assert why_without([design]).startswith("the designs have no struts or springs: no size of effort.parts")
+    assert why_without([design, best]) == ""
 
 
 def test_a_list_gives_the_struts_back(result: Result, best: Candidate, tmp_path: Path) -> None:
@@ -98,3 +116,5 @@ def test_a_known_strut_outside_its_area_is_a_defect(best: Candidate) -> None:
     other = replace(part, between=(part.places[0], EffortPlace(2, Box((u, u), (v, v)))))
     lines = list(map(str, with_parts(bare, [other]).verdict.defects))
     assert "effort.parts[0].between[1].link: the link of the end is 2, allowed: 3" in lines
+    (defect,) = with_parts(bare, [part, part]).verdict.defects
+    assert str(defect) == "effort.parts: the number of struts and springs is 2, allowed: 1"

@@ -113,3 +113,17 @@ def test_both_senses_of_a_driver_are_alike_where_strokes_take_equally_long(limit
     ccw, cw = (found(60, 1.0, driver_sense=sense, **limit) for sense in ("ccw", "cw"))
     assert min(len(ccw), len(cw)) >= 8
     assert worst(cw)[0] == pytest.approx(worst(ccw)[0], abs=1e-3)
+
+
+@pytest.mark.slow
+def test_limits_at_limit_positions_are_kept_alike_in_every_unit_of_length() -> None:
+    def best(unit: float) -> float:
+        at = [
+            {"targets": [1], "a": {"x": [20 * unit, 30 * unit]}},
+            {"targets": [2], "distances": {"a-o4": [100 * unit, 115 * unit]}},
+        ]
+        o4 = {"x": [90 * unit, 110 * unit], "y": [-10 * unit, 10 * unit]}
+        return float(worst(found(80, 1.11, o2=[0, 0], o4=o4, at=at))[0])
+
+    # by SLSQP from the best of a million random crank-rockers
+    assert [best(unit) for unit in (1e-9, 1.0, 1e9)] == pytest.approx(3 * [36.44385], abs=1e-4)

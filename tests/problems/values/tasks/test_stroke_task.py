@@ -129,6 +129,12 @@ def test_limits_that_say_nothing_in_limit_positions_are_refused_in_a_line(stated
     assert refusal(Problem, task=task, requirements=wanted) == said
 
 
+def test_a_target_may_be_named_twice_and_its_place_limits_something() -> None:
+    assert TargetLimits(targets=[2, 1, 2], transmission_min_deg=30).targets == (2, 1)
+    line = refusal(TargetLimits, targets=[1], a=Box())
+    assert line == "a limits neither x nor y; give one of them a finite side"
+
+
 def test_a_centre_in_a_limit_position_is_a_place_of_b() -> None:
     task, single = StrokeTask(swing=1.0), TargetLimits(targets=[1], instant_centre=Box(x=(0, 1)))
     line = refusal(Problem, task=task, requirements=Requirements(at=(single,)))
