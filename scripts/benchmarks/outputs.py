@@ -130,15 +130,15 @@ class Strokes:
         """Distances to the limits, (n, K); negative beyond them."""
         task = self.problem.task
         wanted = self.problem.requirements.resolved(task.size, scale_free=task.scale_free)
-        coupler = at["b"] - at["a"]
+        coupler, names = at["b"] - at["a"], ("r2", "r3") if task.stroke else ("r1", "r2", "r3", "r4")
         if task.stroke is None:
-            bars, names = at["r1"] + at["r2"] + at["r3"] + at["r4"], ("r1", "r2", "r3", "r4")
+            bars = at["r1"] + at["r2"] + at["r3"] + at["r4"]
             shorter, difference = at["r1"] - at["r2"], at["r3"] - at["r4"]
             turns = [at["r3"] + at["r4"] - at["r1"] - at["r2"], shorter - difference, shorter + difference]
             rows = [each / bars - wanted.rotatability_margin for each in turns]
             sides = (coupler.conj() * (at["b"] - at["o4"][:, None])).imag
         else:
-            names, rows = ("r2", "r3"), [at["r3"] - at["r2"] - at["beside"]]
+            rows = [at["r3"] - at["r2"] - at["beside"]]
             sides = (coupler.conj() * at["along"][:, None]).real
         rows.append(
             sides.prod(axis=1) / (np.abs(sides).max(axis=1) ** 2 + 1e-300)
@@ -228,13 +228,16 @@ def _moved(problem: Problem, x: FloatArray, slow: int, side: int) -> FloatArray:
         at = some.placed
         return np.concatenate([some.angles(at)[0] - z[5], some.room(at)[0]])
 
-    begun = np.append(x, members(x).angles(members(x).placed).min())
-    bounds = [(1e-3, 1 - 1e-3), (-5, 5), *[(None, None)] * 3, (0, np.pi / 2)]
+    begun: FloatArray = np.append(x, members(x).angles(members(x).placed).min())
+    bounds: Any = [(1e-3, 1 - 1e-3), (-5, 5), *[(None, None)] * 3, (0, np.pi / 2)]
+    within: Any = {"type": "ineq", "fun": room}
+    options: Any = {"maxiter": 200, "ftol": 1e-11}
+
+    def negative(z: FloatArray) -> float:
+        return -float(z[5])
+
     with np.errstate(all="ignore"):
-        done = minimize(
-            lambda z: -z[5], begun, constraints=[{"type": "ineq", "fun": room}], bounds=bounds,
-            method="SLSQP", options={"maxiter": 200, "ftol": 1e-11},
-        )  # fmt: skip
+        done = minimize(negative, begun, method="SLSQP", bounds=bounds, constraints=within, options=options)
     return np.asarray(done.x[None, :5])
 
 
@@ -243,17 +246,13 @@ def free_stroke(slides: bool, number: int) -> Candidate:
     rng = np.random.default_rng([17, number])
     swing, ratio = float(rng.uniform(25, 100)), float(rng.uniform(1.0, 1.25))
     wide = 2 * WIDE if slides else WIDE
-    near = {"o2": Box(x=(-wide, wide), y=(-wide, wide))}
+    o2, o4 = Box(x=(-wide, wide), y=(-wide, wide)), Box(x=(1 - WIDE, 1 + WIDE), y=(-WIDE, WIDE))
     if slides:
-        task = StrokeTask(stroke=1.0, time_ratio=ratio)
-        wanted, kind = (
-            Requirements(**near, slide_angle_deg=0.0, link_ratio_max=5.0, offset=(0, 5)),
-            "slider-crank",
-        )
+        task, kind = StrokeTask(stroke=1.0, time_ratio=ratio), "slider-crank"
+        wanted = Requirements(o2=o2, slide_angle_deg=0.0, link_ratio_max=5.0, offset=(0, 5))
     else:
-        task = StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio)
-        near["o4"] = Box(x=(1 - WIDE, 1 + WIDE), y=(-WIDE, WIDE))
-        wanted, kind = Requirements(**near), "four-bar"
+        task, kind = StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio), "four-bar"
+        wanted = Requirements(o2=o2, o4=o4)
     return synthesize(Problem(task=task, requirements=wanted, mechanism=kind), seed=0).best
 
 
