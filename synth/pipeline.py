@@ -152,6 +152,7 @@ def _one_kind(scaled: ScaledProblem, run: Run, stop_condition: StopCondition) ->
     with run.timed("proving"):
         proven = bounds_after(scaled, run.proving, bounds, [each for one in ledgers for each in one.best])
         dyads = certified_of(scaled) if bounds is None else None
-    if proven is not None and proven is not bounds and proven.found is not None:
-        solve([proven.found.linkage], ledgers[0], run)
+    by_search = proven is bounds and any(each.best for each in ledgers)
+    if proven is not None and proven.found is not None and not by_search:
+        solve([proven.found.linkage], ledgers[0], run)  # it was reported: a stopped search has it, too
     return conclude(scaled, ledgers, run, stop_condition, proven or dyads, atlas)

@@ -33,8 +33,7 @@ def half_planes(area: shapely.Geometry, point: complex, count: int) -> FloatArra
     planes = np.tile(EVERY_PLANE, (count, 1))
     if shapely.contains_xy(area, point.real, point.imag):
         place = shapely.Point(point.real, point.imag)
-        nearest = shapely.get_coordinates(shapely.shortest_line(shapely.boundary(area), place))[0]
-        point = complex(*nearest)
+        point = complex(*shapely.get_coordinates(shapely.shortest_line(shapely.boundary(area), place))[0])
     left = area
     for plane in planes:
         begin, end = _sides(left)

@@ -187,7 +187,8 @@ class Ledger:
         for one in attempts:
             self.verified += one.verified
             if one.verified:
-                self._errors[-1] = min(self._errors[-1], one.verified[0].error(self.scaled.problem))
+                error = one.verified[0].error(self.scaled.problem)
+                self._errors[-1:] = [min([*self._errors[-1:], error])]  # a stopped search may have no round
             else:
                 self.rejected.append(one)
 
@@ -264,7 +265,9 @@ class Ledger:
     @property
     def why(self) -> str:
         """Why the search ended; for exact designs, only where there are fewer than enough."""
-        solves = f"{self.solved} of {counted(self.starts, 'solve')}"
+        solves = counted(self.solved, "solve")
+        if self.solved <= self.starts:  # more of them continue from designs
+            solves = f"{self.solved} of {counted(self.starts, 'solve')}"
         if not self.complete:
             none = "" if self.best else "; no design came up so far"
             return f"the search ended after {solves}: it was stopped{none}"

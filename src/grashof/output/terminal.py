@@ -81,7 +81,9 @@ def search_progress(
 
 def _step(step: Progress, wanted: bool) -> str:
     verified = f"{counted(step.verified, 'design')} verified{f' ({step.enough} wanted)' if wanted else ''}"
-    return verified if step.starts is None else f"{verified}, {step.solved} of {step.starts} starts solved"
+    if step.starts is None:
+        return verified
+    return f"{verified}, {min(step.solved, step.starts)} of {step.starts} starts solved"
 
 
 def print_table(result: Result, verified: int | None = None) -> None:

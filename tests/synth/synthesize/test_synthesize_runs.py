@@ -22,7 +22,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.explain import Explanation
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.ledger import Ledger
-from grashof.synth.search.searches import Run
+from grashof.synth.search.searches import Run, nothing_to_search
 from grashof.synth.search.workers import solved_there
 
 pytestmark = pytest.mark.usefixtures("small_search")
@@ -144,6 +144,19 @@ def test_reported_designs_of_a_stopped_search_make_a_list(luggage: Problem, tmp_
     assert all(verify(one.linkage, luggage.task, luggage.requirements).ok for one in designs)
     csv_of(Result(luggage, designs), tmp_path)
     assert pd.read_csv(tmp_path / "out.csv")["id"].tolist() == [one.id for one in designs]
+
+
+def test_a_design_that_a_proof_reports_is_not_lost(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the search is stopped before it has a round."""
+    monkeypatch.setattr(
+        import_module("grashof.synth.pipeline"),
+        "searches",
+        lambda scaled, run, _: nothing_to_search(scaled, run),
+    )
+    seen: list[Progress] = []
+    stopped = synthesize(luggage, progress=seen.append, stop=lambda: bool(seen))
+    assert same_designs(stopped.candidates, seen[0].designs)
+    assert len(stopped) == 1
 
 
 def of_two_poses(luggage: Problem) -> Problem:
