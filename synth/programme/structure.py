@@ -177,14 +177,15 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     zoned = start.terms.zoned and (scaled.has_angles or scaled.timed)
     torque = scaled.problem.torque
     placed = placed or (torque is not None and torque.over == "target")
-    own = scaled.every_constraint or (start.terms.bounded and start.terms.objective is None)
+    own = scaled.constraints or (start.terms.bounded and start.terms.objective is None)
     every = bool(placed or moving or own or zoned)
     if scaled.timed:
-        return (every and wanted.theta2_start_deg is None,) * count
+        return (bool(every or scaled.at_targets) and wanted.theta2_start_deg is None,) * count
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
     ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.terms.bounded))
     nearest = np.full(count, every)
     nearest[[0, -1]] |= ends or torque is not None
+    nearest[[limit.k for limit in scaled.at_targets]] = True
     if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is given
         nearest[start.visit.index(0)] = scaled.has_angles
     return tuple(nearest.tolist())

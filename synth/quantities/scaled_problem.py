@@ -25,7 +25,7 @@ from grashof.synth.quantities.formulas import of_six_bars
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.kinds import kind_of
-from grashof.synth.quantities.target_constraints import target_constraints
+from grashof.synth.quantities.target_constraints import AtTarget, target_constraints
 from grashof.synth.theory.burmester import Displacements
 
 
@@ -99,7 +99,7 @@ class ScaledProblem:
         return self.problem.objective if self.own_objective is None else None
 
     @property
-    def at_targets(self) -> tuple[Constraint, ...]:
+    def at_targets(self) -> tuple[AtTarget, ...]:
         """Limits at single targets as constraints."""
         return target_constraints(self.problem)
 

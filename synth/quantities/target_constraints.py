@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, ClassVar
@@ -15,11 +15,13 @@ from grashof.problems.values.arrays import Limits
 from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
+from grashof.synth.loop.dyad import ClosingDyad, PlacedLoop
 from grashof.synth.quantities.regions import hull_rows
 
 INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
 ROUNDING = 1e-10  # share
 FLAT = 1e-4  # sine of an angle below which its sense is not certain
+FLATTEST = 0.05  # slope of a limit by its angle below which it is made steeper no further
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +38,7 @@ class AtTarget:
     def __name__(self) -> str:
         return f"{self.name} at target {self.k + 1}"
 
-    def __call__(self, design: Design) -> Any:
+    def __call__(self, design: Design) -> list[Any]:
         """Excess over the limits, of lengths in sizes."""
         if self.name in _EXCESS:
             excess = _EXCESS[self.name](self, design)
@@ -70,9 +72,24 @@ class AtTarget:
     def free(self, design: Design) -> list[Any]:
         """Excess over the other limits."""
         if self.name in _EXCESS:
-            return self(design)  # type: ignore[no-any-return]
+            return self(design)
         numbers = (number for number in self._sized(design) if number[1] < number[2])
         return [over for number in numbers for over in _beyond(*number)]
+
+    def residuals(self, design: Design) -> list[Any]:
+        """Excess in a search: of angles about as much as they are missed by, rad."""
+        if self.name == "mechanical_advantage_min":
+            return [self.advantage_share(design)]
+        return [self.steep * row for row in self(design)]
+
+    @property
+    def steep(self) -> float:
+        """The factor by which a limit of a cosine grows by its angle where it begins to be missed."""
+        if self.name not in ("past_deg", "coupler_angle_deg"):
+            return 1.0
+        low, high = np.radians(getattr(self.limits, self.name)).tolist()
+        slope = 2 * np.sin(high - low) if self.name == "past_deg" else np.sin(min((high - low) / 2, np.pi))
+        return float(1.0 / max(abs(slope), FLATTEST))
 
     def past(self, design: Design) -> Any:
         """By the side of the line on which the motion from, or to, the other end begins."""
@@ -148,6 +165,40 @@ def target_constraints(problem: Problem) -> tuple[AtTarget, ...]:
         AtTarget(limits, name, number - 1, problem.task.size)
         for limits in problem.requirements.at
         for name, number in product(limits.limited, limits.targets)
+    )
+
+
+def seen(view: PlacedLoop, dyad: ClosingDyad, slide_angle: Any, columns: Mapping[int, int] | None) -> Design:
+    """Linkages as these limits see them.
+
+    `columns` are those of the targets that count; None where A and B are at a single one. `slide_angle` is
+    that of kinds whose O4 is no pivot.
+    """
+
+    def places(name: str) -> list[Any]:
+        at = getattr(view, name)
+        if columns is None:
+            return [(at.x, at.y)]
+        every: list[Any] = [None] * (max(columns) + 1)
+        for target, column in columns.items():
+            every[target] = at.x.column(column), at.y.column(column)
+        return every
+
+    nothing: Any = None
+    return Design(
+        o2=(view.o2.x, view.o2.y),
+        o4=(view.o4.x, view.o4.y) if dyad.pinned else None,
+        r1=nothing,
+        r2=nothing,
+        r3=True if dyad.bars else None,
+        r4=nothing,
+        theta1=nothing,
+        coupler_point=nothing,
+        theta2=nothing,
+        a=places("a"),
+        b=places("b"),
+        p=(),
+        slide_angle=None if dyad.pinned else slide_angle,
     )
 
 

@@ -134,11 +134,15 @@ def _clear(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
 
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
     """Solve; tighten and repeat while a single requirement is narrowly missed."""
+    strict, start = start, start.under(loose=any(Form.of(scaled, start).nearest))
     solve = solve_by_exchange(scaled, start)
-    if solve.status not in SOLVED and any(Form.of(scaled, start).nearest) and not stop_requested():
-        start = start.under(loose=True)
-        solve = solve_by_exchange(scaled, start)
     done = yield from polished_and_judged(scaled, start, solve, number)
+    if start.terms.loose and not done.verified and not stop_requested():
+        strict = begun_from(strict, solve) if solve.status in SOLVED else strict
+        again = solve_by_exchange(scaled, strict)
+        if again.status in SOLVED:
+            start, solve = strict, again
+            done = yield from polished_and_judged(scaled, start, solve, number)
     for _ in range(MORE if solve.status in SOLVED else 0):
         more = _more(scaled, start, done.candidate)
         if not more or stop_requested():

@@ -5,7 +5,7 @@ The unknowns make linkages feasible by construction; the loop is in the frame of
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -13,9 +13,11 @@ import numpy as np
 from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.quantities.formulas import Formulas, Part, parts_of, range_of
+from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import hull_parts, pairs_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.target_constraints import AtTarget
 from grashof.synth.quantities.wanted_torque import WantedCurve
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
@@ -42,6 +44,8 @@ class SearchTargets:
     spare: float = 0.0  # share by which limits are narrower here
     torque: WantedCurve | None = None  # wanted, where the deviation from it counts as an error
     count: int = 0  # number of targets of the task, for the weight of the torque
+    at: tuple[AtTarget, ...] = ()  # limits at single targets of these
+    frame: Frame | None = None  # in which lengths are sizes
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
@@ -80,6 +84,8 @@ class SearchTargets:
             kind=scaled.kind,
             torque=curve if curve is not None and curve.weight else None,
             count=len(scaled.targets),
+            at=tuple(replace(limit, k=limit.k % len(weights)) for limit in scaled.at_targets),
+            frame=scaled.frame,
         )
 
     @property

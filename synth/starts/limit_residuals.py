@@ -11,9 +11,11 @@ from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits, turned_beyond
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.loop.dual import Dual
-from grashof.synth.loop.dyad import Sizes
+from grashof.synth.loop.dyad import PlacedLoop, Sizes
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import LOGARITHMIC, View
+from grashof.synth.quantities.frame import Frame
+from grashof.synth.quantities.target_constraints import seen
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
@@ -83,9 +85,8 @@ class Placement(View):
 
     @cached_property
     def b(self) -> Vector:  # type: ignore[override]
-        """B at every target; not of an inverted slider-crank."""
-        at_b: Vector = self.a + self.relative.r3 * self._coupler
-        return at_b
+        """B at every target."""
+        return self._target.kind.dyad.b(self, self.a, self._coupler / self.r1)
 
     @cached_property
     def _coupler(self) -> Vector:
@@ -121,13 +122,23 @@ class Placement(View):
         return Dual(body_turns(self._target, self.loop)[1][:, None], -slope[:, None])
 
 
+class _Outward(PlacedLoop):
+    """Linkages of a batch in the unit and the frame of the problem."""
+
+    def __init__(self, frame: Frame, at: Placement) -> None:
+        origin = Vector(frame.origin.real, frame.origin.imag)
+        self.o2, self.o4, self.a, self.b = (
+            frame.scale * place + origin for place in (at.o2, at.o4, at.a, at.b)
+        )
+
+
 def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatArray]:
     """Excess over every limit, (n, L), and its derivative by the unknowns, (n, L, M).
 
     Lengths of links and their ratio by their logarithms, places and coupler arms in sizes, angles in rad, the
     transmission by |cos mu|.
     """
-    rows = [*limit_rows(target, at), *_transmission_rows(target, at.relative)]
+    rows = [*limit_rows(target, at), *_rows_at(target, at), *_transmission_rows(target, at.relative)]
     over = np.concatenate([row.value for row in rows], axis=1)
     return over, slopes_of(rows, over.shape[1], at.by_theta3.shape[2])
 
@@ -157,6 +168,18 @@ def limit_rows(target: SearchTargets, at: View) -> Iterator[Dual]:
             yield _outside(value, (np.log(max(low, least)), np.log(high)))
         elif (low, high) != (-np.inf, np.inf):
             yield _outside(value, (low, high))
+
+
+def _rows_at(target: SearchTargets, at: Placement) -> Iterator[Dual]:
+    """Excess over limits at single targets."""
+    if target.frame is None or not target.at:
+        return
+    columns = {k: k for k in (0, *(limit.k for limit in target.at), len(target.points) - 1)}
+    placed = _Outward(target.frame, at)
+    design = seen(placed, target.kind.dyad, at.theta1 - np.pi / 2, columns)
+    for limit in target.at:
+        for row in limit.residuals(design):
+            yield _outside(row, (-np.inf, 0.0))
 
 
 def _outside(row: Dual, limits: Limits) -> Dual:

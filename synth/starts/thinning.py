@@ -28,7 +28,9 @@ def thinned(target: SearchTargets, most: int) -> tuple[SearchTargets, IntArray]:
 
 def _some(target: SearchTargets, index: IntArray) -> SearchTargets:
     names = ("points", "weights", "turns", "turn_weights", "timing")
-    return replace(target, **{name: getattr(target, name)[index] for name in names})
+    column = {int(k): number for number, k in enumerate(index)}
+    at = tuple(replace(limit, k=column[limit.k]) for limit in target.at if limit.k in column)
+    return replace(target, at=at, **{name: getattr(target, name)[index] for name in names})
 
 
 def refined(

@@ -22,7 +22,7 @@ from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Part, View, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import hull_parts, pairs_of
-from grashof.synth.quantities.target_constraints import AtTarget, target_constraints
+from grashof.synth.quantities.target_constraints import AtTarget, seen, target_constraints
 from grashof.synth.theory.functions.limits import joined_rows
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.placed import PLACED, Placed
@@ -30,7 +30,6 @@ from grashof.synth.theory.functions.placed import PLACED, Placed
 INSIDE = 4e-8  # sizes: margin by which lengths are kept, so that rounding misses none
 ALONG = 25  # inputs at which what is limited over the motion is computed, beside its extremes
 CLOSER = 20.0  # by how much an extreme is bracketed more closely in a second look
-FLATTEST = 0.05  # slope of a limit by its angle below which it is made steeper no further
 AT_PAIRS = ("a", "b", "distances")  # limited at every pair
 OVER_MOTION = ("coupler_angle_deg", "coupler_rate", "mechanical_advantage_min")
 PLACES = frozenset({"a", "b", "instant_centre"})
@@ -191,7 +190,7 @@ class PlaceLimits:
                 value = np.sqrt(part.of(view)) if part.squared else part.of(view)
                 found += self._sides(value, limits)
             if self.at:
-                design = view.at_targets(number, len(self.inputs))
+                design = view.seen(number)
                 for each in self.at:
                     found += self._of_target(each, design, self._sense(each, batch))
         for each in self.along:
@@ -246,20 +245,16 @@ class PlaceLimits:
             for value, limits in limit.numbers(design):
                 yield from self._sides(value, limits)
             return
-        steep = _steep(limit.limits, limit.name)
         if sense is not None:
-            rows = [limit.past_from(design, sense)]
-        elif limit.name == "mechanical_advantage_min":
-            rows = [limit.advantage_share(design)]
+            yield -limit.steep * limit.past_from(design, sense)
         else:
-            rows = limit(design)
-        yield from (-steep * row for row in rows)
+            yield from (-row for row in limit.residuals(design))
 
     def _over_motion(self, limit: AtTarget, batch: Generators) -> Iterator[Dual]:
         """A limit at inputs of the range, and where it is kept by least in between."""
 
         def rows(inputs: FloatArray) -> list[Dual]:
-            return list(self._of_target(limit, _InPlace(self, batch, inputs).at_all()))
+            return list(self._of_target(limit, _InPlace(self, batch, inputs).seen()))
 
         inputs = np.linspace(0.0, float(self.inputs[-1]), ALONG)
         every = rows(inputs)
@@ -311,39 +306,9 @@ class _InPlace(View):
         if self.kind.dyad.pinned:
             self.o4 = placed(Vector(still + 1.0, still))
 
-    def at_targets(self, columns: Mapping[int, int], count: int) -> Design:
-        """As limits at single targets see it, given the column of every target that counts."""
-        a, b = (
-            [
-                (at.x.column(columns[k]), at.y.column(columns[k])) if k in columns else None
-                for k in range(count)
-            ]
-            for at in (self.a, self.b)
-        )
-        return self._design(a, b)
-
-    def at_all(self) -> Design:
-        """All inputs as a single target."""
-        return self._design([(self.a.x, self.a.y)], [(self.b.x, self.b.y)])
-
-    def _design(self, a: Sequence[Any], b: Sequence[Any]) -> Design:
-        dyad = self.kind.dyad
-        nothing: Any = None
-        return Design(
-            o2=(self.o2.x, self.o2.y),
-            o4=(self.o4.x, self.o4.y) if dyad.pinned else None,
-            r1=nothing,
-            r2=nothing,
-            r3=True if dyad.bars else None,
-            r4=nothing,
-            theta1=nothing,
-            coupler_point=nothing,
-            theta2=nothing,
-            a=a,
-            b=b,
-            p=(),
-            slide_angle=None if dyad.pinned else self.angle,
-        )
+    def seen(self, columns: Mapping[int, int] | None = None) -> Design:
+        """As limits at single targets see it; by default all inputs are a single one."""
+        return seen(self, self.kind.dyad, self.angle, columns)
 
 
 def _free(wanted: Requirements, moving: set[str], *, pinned: bool) -> FloatArray:
@@ -371,15 +336,6 @@ def _inside(box: Box | None, x: float, y: float) -> Box:
         for at, side in zip((x, y), ((box or ANYWHERE).x, (box or ANYWHERE).y), strict=True)
     )
     return Box(x=(x, x), y=(y, y))
-
-
-def _steep(limits: TargetLimits, name: str) -> float:
-    """The factor by which a limit of a cosine grows by its angle where it begins to be missed."""
-    if name not in ("past_deg", "coupler_angle_deg"):
-        return 1.0
-    low, high = np.radians(getattr(limits, name)).tolist()
-    slope = 2 * np.sin(high - low) if name == "past_deg" else np.sin(min((high - low) / 2, np.pi))
-    return float(1.0 / max(abs(slope), FLATTEST))
 
 
 def _lowest(inputs: FloatArray, values: FloatArray) -> FloatArray:
