@@ -91,18 +91,19 @@ def _poses(
     members: Members, batch: Linkage, task: Task, wanted: Requirements
 ) -> Iterator[tuple[Targets, TaskMotion]]:
     nearest = nearest_to_poses(batch, task)
-    motions = task_motions(batch, nearest.theta2, wanted.order)
+    targets = nearest.targets
+    motions = task_motions(batch, targets.theta2, wanted.order)
     once = len(batch.mechanism.loops) == 1  # it stands in a pose at a single driver angle
     if not wanted.order or (wanted.is_exact(task) and task.is_whole and once):
-        yield from ((nearest[row], motion) for row, motion in enumerate(motions))
+        yield from ((targets[row], motion) for row, motion in enumerate(motions))
         return
-    branch = branch_index(batch[:, None], nearest.theta2, nearest.assembly)
-    joined = (branch == branch[:, :1]).all(axis=1) & (nearest.assembly[:, 0] == batch.assembly)
+    branch = branch_index(batch[:, None], targets.theta2, targets.assembly)
+    joined = (branch == branch[:, :1]).all(axis=1) & (targets.assembly[:, 0] == batch.assembly)
     for row, (linkage, motion) in enumerate(zip(members, motions, strict=True)):
         if motion.in_order and (joined[row] or not wanted.same_branch):
-            yield nearest[row], motion
+            yield targets[row], motion
         else:
-            yield poses_in_order(linkage, task, nearest[row], motion)
+            yield poses_in_order(linkage, task, targets[row], motion, nearest.valleys.get(row))
 
 
 def _in_plane(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 
 from grashof.analysis.judge.meeting.assignment import assigned, assigned_around
@@ -31,8 +34,20 @@ _FOLLOWED = 2.0  # times the least sum there: such guesses are followed
 _FREE = np.array(np.inf)
 
 
-def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
-    """The linkages of a batch (B,) nearest to each pose, by itself; on the own assembly or a nearer other.
+@dataclass(frozen=True, slots=True)
+class Nearest:
+    """The linkages of a batch (B,) nearest to each pose by itself, on the own assembly or a nearer other.
+
+    `valleys` has driver angles in the lowest valleys of the misses, on the own assembly, of each linkage that
+    misses a pose.
+    """
+
+    targets: Targets
+    valleys: Mapping[int, FloatArray]
+
+
+def nearest_to_poses(linkage: Linkage, task: Task) -> Nearest:
+    """The linkages of a batch (B,) nearest to each pose.
 
     Gauss-Newton steps begin where A would be if the body stood in the pose; where a pose is not met, a scan
     over all driver angles finds the lowest valleys.
@@ -50,11 +65,21 @@ def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
     angle, miss = _descend(linkage, task, ranges, np.broadcast_to(guess, signs.shape), signs)
     theta2, assembly = _least(task, angle, signs, miss)
     missed = np.flatnonzero(~_met(miss, task))
+    bottoms = dict[int, FloatArray]()
     for rows in np.array_split(missed, -(-missed.size * len(task) // _AT_ONCE) or 1):
-        more = _valleys(linkage[rows], task) if rows.size else (angle[rows], signs[rows], miss[rows])
+        if not rows.size:
+            break
+        more = _valleys(linkage[rows], task)
         every = zip((angle[rows], signs[rows], miss[rows]), more, strict=True)
         theta2[rows], assembly[rows] = _least(task, *(np.concatenate(each, axis=1) for each in every))
-    return Targets.of(linkage, task, theta2, assembly)
+        bottoms |= {row: _on_own(linkage[row], *more[:2], k) for k, row in enumerate(rows.tolist())}
+    return Nearest(Targets.of(linkage, task, theta2, assembly), bottoms)
+
+
+def _on_own(linkage: Linkage, angle: FloatArray, signs: IntArray, row: int) -> FloatArray:
+    """Of the valleys of a batch those of one linkage on its own assembly."""
+    found: FloatArray = angle[row][signs[row] == int(linkage.assembly)]
+    return found
 
 
 def _least(task: Task, angle: FloatArray, signs: IntArray, miss: FloatArray) -> tuple[FloatArray, IntArray]:
@@ -141,17 +166,20 @@ def _into_ranges(ranges: FloatArray, theta2: FloatArray) -> FloatArray:
 
 
 def poses_in_order(
-    linkage: Linkage, task: Task, nearest: Targets, motion: TaskMotion
+    linkage: Linkage, task: Task, nearest: Targets, motion: TaskMotion, valleys: FloatArray | None = None
 ) -> tuple[Targets, TaskMotion]:
     """Driver angles that do not go back, within one turn, with the least weighted squares.
 
-    On the own assembly and in one range; `nearest` and `motion` where there are none. Poses free in part are
+    On the own assembly and in one range; `nearest` and `motion` where there are none. `valleys` are those of
+    `Nearest`, if known. Poses free in part are
     met at several angles, so nearest places may be out of order: dynamic programming over samples and valleys
     of the misses, then Newton's method in all angles.
     """
     own = np.full(len(task), int(linkage.assembly))
     found = list[tuple[FloatArray, float]]()
-    for places, miss, low, high in _by_range(linkage, task):
+    if valleys is None:
+        valleys = _on_own(linkage, *_valleys(linkage[None], task)[:2], 0)
+    for places, miss, low, high in _by_range(linkage, task, valleys):
         limits = np.full((1, len(task)), low), np.full((1, len(task)), high)
         for sense in (1, -1):  # counted backwards, driver angles that fall grow
             order = slice(None, None, sense)
@@ -170,10 +198,13 @@ def poses_in_order(
     return Targets.of(linkage, task, shortest, own), ordered
 
 
-def _by_range(linkage: Linkage, task: Task) -> list[tuple[FloatArray, FloatArray, float, float]]:
-    """Driver angles (M,) and weighted misses there (N, M), with the ends of each range of the driver."""
-    (angle,), (signs,), _ = _valleys(linkage[None], task)
-    bottoms = angle[signs == int(linkage.assembly)]
+def _by_range(
+    linkage: Linkage, task: Task, bottoms: FloatArray
+) -> list[tuple[FloatArray, FloatArray, float, float]]:
+    """Driver angles (M,) and weighted misses there (N, M), with the ends of each range of the driver.
+
+    The angles are samples, and those of valleys (K,).
+    """
     ranges = list[tuple[FloatArray, float, float]]()
     if closes_everywhere(linkage):
         around = linkage.theta1 + np.linspace(0, TURN, _PLACES, endpoint=False)

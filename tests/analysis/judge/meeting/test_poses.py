@@ -31,7 +31,7 @@ PARTS = FULL | st.lists(st.sampled_from(["full", "place", "turned"]), min_size=3
 
 def each_nearest(linkage: FourBar, task: MotionTask) -> Targets:
     """The targets where a single linkage is nearest to each."""
-    return nearest_to_poses(linkage[None], task)[0]
+    return nearest_to_poses(linkage[None], task).targets[0]
 
 
 def with_parts(task: MotionTask, parts: Parts) -> MotionTask:
