@@ -6,25 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems.values.arrays import ComplexArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import ROUNDING, Steps, ToJudge, made_linkage
 from grashof.synth.programme.start import Start
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.quantities.driver_motion import meeting_order, shorter_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.screening import (
-    GROUPS,
-    Configurations,
-    Screened,
-    judge,
-    met,
-    violations_apart,
-)
+from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.theory.stopping import overdue
 
-# Requirements that one position cannot show.
-_OF_MOTION = [
-    GROUPS.index(name) for name in ("driver_sense", "driver_rotation_deg", "output_swing_deg", "stroke")
-]
+SLIGHT = 1e-6  # sizes, rad or ratio: violations that the judge decides on
 
 
 def verified_alike(
@@ -32,23 +24,17 @@ def verified_alike(
 ) -> Steps[tuple[Candidate, ...]]:
     """Verified linkages that lead the coupler point, or the body, as a verified design does."""
     start = Start.of_linkage(scaled, candidate.linkage, candidate.verdict)
-    body, found = scaled.has_angles, list[Candidate]()
-    for points in scaled.kind.alike(start.points, timed=scaled.timed, body=body):
+    found = list[Candidate]()
+    for one in _hopeful(scaled, start):
         if overdue():
             break
-        with np.errstate(divide="ignore", invalid="ignore"):
-            turned = np.angle((start.b - start.a) / (points[3] - points[2]))
-        if not np.isfinite([*points, turned]).all():
+        (points,), (assembly,), (angle,) = one.points, one.assembly, one.body_angle
+        linkage = made_linkage(scaled, points, int(assembly), float(angle))
+        if linkage is None:
             continue
-        at_once = _at_once(scaled, points)
-        if met(np.delete(at_once.violations, _OF_MOTION, axis=1))[0]:
-            angle = start.body_angle + turned if body else 0.0
-            linkage = made_linkage(scaled, points, int(at_once.assembly[0]), float(angle))
-            if linkage is None:
-                continue
-            other = yield ToJudge(linkage, candidate.start, candidate.iterations, most_error)
-            if other.verdict.ok and _as_near(scaled, other, candidate):
-                found.append(replace(other, cognate_of=candidate.id))
+        other = yield ToJudge(linkage, candidate.start, candidate.iterations, most_error)
+        if other.verdict.ok and _as_near(scaled, other, candidate):
+            found.append(replace(other, cognate_of=candidate.id))
     return tuple(found)
 
 
@@ -58,11 +44,36 @@ def _as_near(scaled: ScaledProblem, other: Candidate, candidate: Candidate) -> b
     return bool(np.sqrt(other.verdict.square) <= allowed)
 
 
-def _at_once(scaled: ScaledProblem, points: ComplexArray) -> Screened:
-    """A linkage screened in one position: lengths, pivots, rotatability, which are cheap to compute."""
-    o2, o4, a, b, p = points[:, None]
-    one, none = np.zeros((1, 1), dtype=np.int64), np.zeros(1)
-    theta2 = np.angle(a - o2)[:, None]
-    places = Configurations(o2, o4, a[:, None], b[:, None], one, theta2, none + 1, scaled.kind)
-    violations = violations_apart(places, p, p[:, None], scaled.wanted)
-    return judge(places, p, none, violations, scaled.wanted)
+def _hopeful(scaled: ScaledProblem, start: Start) -> list[Screened]:
+    """Linkages that move alike, each by itself, without those that break a requirement at these targets."""
+    visit = np.argsort(start.visit)
+    a, b, p = start.track[:, visit]
+    still = np.ones_like(a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        every = scaled.kind.alike(
+            np.stack([start.o2 * still, start.o4 * still, a, b, p]),
+            timed=scaled.timed,
+            body=scaled.has_angles,
+        )
+        alike = np.array([one for one in every if np.isfinite(one).all()]).reshape(-1, 5, len(a))
+        turned = np.angle((b[0] - a[0]) / (alike[:, 3, 0] - alike[:, 2, 0]))
+    alike, turned = alike[np.isfinite(turned)], turned[np.isfinite(turned)]
+    if not len(alike):
+        return []
+    angle = start.body_angle + turned if scaled.has_angles else np.zeros(len(turned))
+    found = fully_screened(scaled, _screened(scaled, alike, angle))
+    hopeful = np.flatnonzero(found.violations.max(axis=1) <= SLIGHT).tolist()
+    return [found[k : k + 1] for k in hopeful]
+
+
+def _screened(scaled: ScaledProblem, places: ComplexArray, angle: FloatArray) -> Screened:
+    """Linkages by O2, O4, A, B, P at every target (n, 5, N), and the angle of the body (n,), rad."""
+    o2, o4, a, b, p = places.swapaxes(0, 1)
+    theta2 = np.angle(a - o2)
+    if scaled.wanted.order:
+        visit, (theta2, direction) = np.broadcast_to(np.arange(a.shape[1]), a.shape), shorter_way(theta2)
+    else:
+        visit, theta2, direction = meeting_order(theta2)
+    found = Configurations(o2[:, 0], o4[:, 0], a, b, visit, theta2, direction, scaled.kind)
+    violations = violations_apart(found, p[:, 0], p, scaled.wanted)
+    return judge(found, p[:, 0], np.zeros(len(p)), violations, scaled.wanted, angle)

@@ -6,12 +6,23 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from grashof.problems.values.arrays import FloatArray
 
 
-class Dual(NDArrayOperatorsMixin):
+def _operator(ufunc: np.ufunc) -> tuple[Callable[[Dual, Any], Any], Callable[[Dual, Any], Any]]:
+    """An operator and its reflection, without the detour by NumPy's dispatch."""
+
+    def forward(self: Dual, other: Any) -> Any:
+        return _of(ufunc, self, other) if isinstance(other, _NUMBERS) else NotImplemented
+
+    def reflected(self: Dual, other: Any) -> Any:
+        return _of(ufunc, other, self) if isinstance(other, _NUMBERS) else NotImplemented
+
+    return forward, reflected
+
+
+class Dual:
     """Values (n, K) and their slopes (n, K, M) by M unknowns; K may be 1 in either where it is broadcast.
 
     Forward differentiation (Griewank & Walther, *Evaluating Derivatives*, 2008, chapter 3). Slopes may be
@@ -42,19 +53,41 @@ class Dual(NDArrayOperatorsMixin):
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **others: Any) -> Any:
         if method != "__call__" or others or ufunc not in _SLOPES:
             return NotImplemented
-        values = [each.value if isinstance(each, Dual) else each for each in inputs]
-        value = ufunc(*values)
+        return _of(ufunc, *inputs)
 
-        def slope() -> FloatArray:
-            slopes = [
-                each.slope if by_it is ONE else np.asarray(by_it)[..., None] * each.slope
-                for each, by_it in zip(inputs, _SLOPES[ufunc](value, *values), strict=True)
-                if isinstance(each, Dual)
-            ]
-            total: FloatArray = slopes[0] if len(slopes) == 1 else slopes[0] + slopes[1]
-            return total
+    __add__, __radd__ = _operator(np.add)
+    __sub__, __rsub__ = _operator(np.subtract)
+    __mul__, __rmul__ = _operator(np.multiply)
+    __truediv__, __rtruediv__ = _operator(np.true_divide)
+    __pow__, __mod__ = _operator(np.power)[0], _operator(np.remainder)[0]
+    __ge__, __le__ = _operator(np.greater_equal)[0], _operator(np.less_equal)[0]
+    __lt__, __gt__ = _operator(np.less)
 
-        return Dual(value, slope)
+    def __neg__(self) -> Dual:
+        return _of(np.negative, self)
+
+    def __abs__(self) -> Dual:
+        return _of(np.absolute, self)
+
+
+_NUMBERS = (Dual, float, int, np.ndarray, np.generic)
+
+
+def _of(ufunc: np.ufunc, *inputs: Any) -> Dual:
+    """The function of numbers of which one or both have derivatives."""
+    values = [each.value if isinstance(each, Dual) else each for each in inputs]
+    value = ufunc(*values)
+
+    def slope() -> FloatArray:
+        slopes = [
+            each.slope if by_it is ONE else np.asarray(by_it)[..., None] * each.slope
+            for each, by_it in zip(inputs, _SLOPES[ufunc](value, *values), strict=True)
+            if isinstance(each, Dual)
+        ]
+        total: FloatArray = slopes[0] if len(slopes) == 1 else slopes[0] + slopes[1]
+        return total
+
+    return Dual(value, slope)
 
 
 ONE = 1.0  # its product with a slope is that slope

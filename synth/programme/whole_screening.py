@@ -16,6 +16,7 @@ from grashof.synth.quantities.along_motion import ALONG, allowed_along, along_mo
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened, depth_in, inside, points_kept_out
+from grashof.synth.quantities.target_constraints import seen
 from grashof.synth.quantities.wanted_torque import DEVIATIONS
 
 # Driver angles, the targets' ends among them, and places along a link or a side of the body: of all linkages,
@@ -41,10 +42,24 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
         violations[:, GROUPS.index("size")] = np.maximum(np.maximum(low - size, size - high), 0.0)
     for name in along:
         violations[:, GROUPS.index(name)] = _beyond(scaled, linkages, name)
-    for group, constraints in (("constraints", scaled.constraints), ("at", scaled.at_targets)):
-        if constraints:
-            violations[:, GROUPS.index(group)] += own_violations(scaled, linkages, constraints)
+    if scaled.constraints:
+        violations[:, GROUPS.index("constraints")] += own_violations(scaled, linkages, scaled.constraints)
+    if scaled.at_targets:
+        violations[:, GROUPS.index("at")] += _missed_at(scaled, linkages)
     return replace(linkages, violations=violations)
+
+
+def _missed_at(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """Excess over limits at single targets, (n,)."""
+    o2, o4, _, b, _ = linkages.points.T
+    at_o2, at_o4 = (scaled.frame.outward(pivot).T for pivot in (o2, o4))
+    a, at_b, _ = (list(track.transpose(1, 2, 0)) for track in scaled.frame.outward(linkages.track))
+    slide = scaled.kind.theta1_of(o2, o4, b) - np.pi / 2
+    with np.errstate(all="ignore"):
+        design = seen(scaled.kind.dyad, at_o2, at_o4, slide, a, at_b)
+        over = [row for limit in scaled.at_targets for row in limit(design)]
+    missed: FloatArray = np.minimum(np.nan_to_num(np.maximum(over, 0.0), nan=1.0), FAR).sum(axis=0)
+    return missed
 
 
 def _sizes(linkages: Screened, ground: int) -> FloatArray:

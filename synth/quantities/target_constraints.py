@@ -15,7 +15,8 @@ from grashof.problems.values.arrays import Limits
 from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
-from grashof.synth.loop.dyad import ClosingDyad, PlacedLoop
+from grashof.synth.loop.dyad import ClosingDyad
+from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.regions import hull_rows
 
 INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
@@ -168,26 +169,16 @@ def target_constraints(problem: Problem) -> tuple[AtTarget, ...]:
     )
 
 
-def seen(view: PlacedLoop, dyad: ClosingDyad, slide_angle: Any, columns: Mapping[int, int] | None) -> Design:
-    """Linkages as these limits see them.
+def seen(dyad: ClosingDyad, o2: Any, o4: Any, slide_angle: Any, a: list[Any], b: list[Any]) -> Design:
+    """Linkages as these limits see them, by coordinates: numbers, arrays, or those with derivatives.
 
-    `columns` are those of the targets that count; None where A and B are at a single one. `slide_angle` is
-    that of kinds whose O4 is no pivot.
+    A and B at every target that counts, in the unit of the problem; `slide_angle` of kinds whose O4 is no
+    pivot.
     """
-
-    def places(name: str) -> list[Any]:
-        at = getattr(view, name)
-        if columns is None:
-            return [(at.x, at.y)]
-        every: list[Any] = [None] * (max(columns) + 1)
-        for target, column in columns.items():
-            every[target] = at.x.column(column), at.y.column(column)
-        return every
-
     nothing: Any = None
     return Design(
-        o2=(view.o2.x, view.o2.y),
-        o4=(view.o4.x, view.o4.y) if dyad.pinned else None,
+        o2=o2,
+        o4=o4 if dyad.pinned else None,
         r1=nothing,
         r2=nothing,
         r3=True if dyad.bars else None,
@@ -195,11 +186,19 @@ def seen(view: PlacedLoop, dyad: ClosingDyad, slide_angle: Any, columns: Mapping
         theta1=nothing,
         coupler_point=nothing,
         theta2=nothing,
-        a=places("a"),
-        b=places("b"),
+        a=a,
+        b=b,
         p=(),
         slide_angle=None if dyad.pinned else slide_angle,
     )
+
+
+def columns_of(at: Vector, columns: Mapping[int, int]) -> list[Any]:
+    """Coordinates at the targets that have a column, by the number of the target."""
+    every: list[Any] = [None] * (max(columns) + 1)
+    for target, column in columns.items():
+        every[target] = at.x.column(column), at.y.column(column)
+    return every
 
 
 def _beyond(value: Any, low: float, high: float) -> list[Any]:

@@ -11,11 +11,10 @@ from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits, turned_beyond
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.loop.dual import Dual
-from grashof.synth.loop.dyad import PlacedLoop, Sizes
+from grashof.synth.loop.dyad import Sizes
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import LOGARITHMIC, View
-from grashof.synth.quantities.frame import Frame
-from grashof.synth.quantities.target_constraints import seen
+from grashof.synth.quantities.target_constraints import columns_of, seen
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
@@ -122,16 +121,6 @@ class Placement(View):
         return Dual(body_turns(self._target, self.loop)[1][:, None], -slope[:, None])
 
 
-class _Outward(PlacedLoop):
-    """Linkages of a batch in the unit and the frame of the problem."""
-
-    def __init__(self, frame: Frame, at: Placement) -> None:
-        origin = Vector(frame.origin.real, frame.origin.imag)
-        self.o2, self.o4, self.a, self.b = (
-            frame.scale * place + origin for place in (at.o2, at.o4, at.a, at.b)
-        )
-
-
 def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatArray]:
     """Excess over every limit, (n, L), and its derivative by the unknowns, (n, L, M).
 
@@ -175,8 +164,10 @@ def _rows_at(target: SearchTargets, at: Placement) -> Iterator[Dual]:
     if target.frame is None or not target.at:
         return
     columns = {k: k for k in (0, *(limit.k for limit in target.at), len(target.points) - 1)}
-    placed = _Outward(target.frame, at)
-    design = seen(placed, target.kind.dyad, at.theta1 - np.pi / 2, columns)
+    origin = Vector(target.frame.origin.real, target.frame.origin.imag)
+    o2, o4, a, b = (target.frame.scale * place + origin for place in (at.o2, at.o4, at.a, at.b))
+    places = (columns_of(track, columns) for track in (a, b))
+    design = seen(target.kind.dyad, (o2.x, o2.y), (o4.x, o4.y), at.theta1 - np.pi / 2, *places)
     for limit in target.at:
         for row in limit.residuals(design):
             yield _outside(row, (-np.inf, 0.0))

@@ -22,7 +22,12 @@ from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Part, View, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import hull_parts, pairs_of
-from grashof.synth.quantities.target_constraints import AtTarget, seen, target_constraints
+from grashof.synth.quantities.target_constraints import (
+    AtTarget,
+    columns_of,
+    seen,
+    target_constraints,
+)
 from grashof.synth.theory.functions.limits import joined_rows
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.placed import PLACED, Placed
@@ -308,7 +313,9 @@ class _InPlace(View):
 
     def seen(self, columns: Mapping[int, int] | None = None) -> Design:
         """As limits at single targets see it; by default all inputs are a single one."""
-        return seen(self, self.kind.dyad, self.angle, columns)
+        a, b = ([(at.x, at.y)] if columns is None else columns_of(at, columns) for at in (self.a, self.b))
+        o2, o4 = ((at.x, at.y) for at in (self.o2, self.o4 if self.kind.dyad.pinned else self.o2))
+        return seen(self.kind.dyad, o2, o4, self.angle, a, b)
 
 
 def _free(wanted: Requirements, moving: set[str], *, pinned: bool) -> FloatArray:
