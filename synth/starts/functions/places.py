@@ -7,6 +7,7 @@ free, these are numbers of the search.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -30,7 +31,7 @@ from grashof.synth.quantities.target_constraints import (
 )
 from grashof.synth.theory.functions.limits import joined_rows
 from grashof.synth.theory.functions.output import Generators
-from grashof.synth.theory.functions.placed import PLACED, Placed
+from grashof.synth.theory.functions.placed import NUMBERS, PLACED, Placed
 
 INSIDE = 4e-8  # sizes: margin by which lengths are kept, so that rounding misses none
 ALONG = 25  # inputs at which what is limited over the motion is computed, beside its extremes
@@ -125,33 +126,31 @@ class PlaceLimits:
         rough = replace(self, inputs=self.inputs[some]) if not self.at else self
         made = PLACED[type(batch)].of(batch, self.usual)
         turns = np.linspace(0, 2 * np.pi, TURNS, endpoint=False) if self.free[3] else np.zeros(1)
-        least, best = np.full(len(batch), np.inf), made.shape.copy()
+        still, least = _Still(made), np.full(len(batch), np.inf)
+        best = still.shape
         for turn in turns:
-            shape = made.shape.copy()
-            shape[:, made.PLACE.stop - 1] += turn
-            there, missed = rough._moved(made.changed(shape))
+            there, missed = rough._moved(still.at(still.shape + np.array([0.0, 0.0, 0.0, turn])))
             better = missed < least
-            least, best = np.where(better, missed, least), np.where(better[:, None], there.shape, best)
-        return made.changed(best)
+            least, best = np.where(better, missed, least), np.where(better[:, None], there, best)
+        shape = made.shape.copy()
+        shape[:, made.PLACE] = best
+        return made.changed(shape)
 
-    def _moved(self, batch: Placed) -> tuple[Placed, FloatArray]:
-        """Generators after steps of Gauss and Newton of their places alone, and their squared misses."""
-        place = batch.PLACE
-        square = np.full(len(batch), np.inf)
+    def _moved(self, still: _Still) -> tuple[FloatArray, FloatArray]:
+        """Places after steps of Gauss and Newton, and their squared misses."""
+        square = np.full(len(still), np.inf)
         for _ in range(STEPS):
-            rows = self.rows(batch)
+            rows = self.rows(still)
             short = np.nan_to_num(np.minimum(rows.value, 0.0), nan=-1e3)
             square = (short**2).sum(axis=1)
-            slope = np.nan_to_num(rows.slope[..., place] * (short < 0)[..., None])
+            slope = np.nan_to_num(rows.slope * (short < 0)[..., None])
             normal = slope.swapaxes(1, 2) @ slope
             scale = np.einsum("mii->mi", normal).max(axis=1)
             normal = normal + (1e-6 * scale + 1e-12)[:, None, None] * np.eye(4)
             step = np.linalg.solve(normal, (slope.swapaxes(1, 2) @ short[..., None]))[..., 0]
             step = np.clip(step, [-np.inf, -np.inf, -1.0, -1.0], [np.inf, np.inf, 1.0, 1.0])
-            shape = batch.shape.copy()
-            shape[:, place] -= step * self.free
-            batch = batch.changed(shape)
-        return batch, square
+            still = still.at(still.shape - step * self.free)
+        return still.shape, square
 
     def of_linkage(self, batch: Generators, linkage: Any) -> Generators:
         """A generator where its linkage lies."""
@@ -175,7 +174,7 @@ class PlaceLimits:
         o4 = _inside(wanted.o4, o2.x[0] + length * np.cos(angle), o2.y[0] + length * np.sin(angle))
         return replace(wanted, o2=o2, o4=o4)
 
-    def rows(self, batch: Generators) -> Dual:
+    def rows(self, batch: Generators | _Still) -> Dual:
         """All of them (M, L), in usual units or rad."""
         with np.errstate(all="ignore"):
             found = self._rows(batch)
@@ -186,7 +185,7 @@ class PlaceLimits:
 
         return Dual(found.value, slope)
 
-    def _rows(self, batch: Generators) -> Dual:
+    def _rows(self, batch: Generators | _Still) -> Dual:
         found = list[Dual]()
         number = {k: row for row, k in enumerate(self._numbers)}
         if self.parts or self.at:
@@ -211,7 +210,7 @@ class PlaceLimits:
         ends = {0, len(self.inputs) - 1} if any(each.name == "past_deg" for each in self.at) else set[int]()
         return sorted(ends | {each.k for each in self.at})
 
-    def place(self, batch: Generators) -> tuple[Any, ...]:
+    def place(self, batch: Generators | _Still) -> tuple[Any, ...]:
         """The numbers of the place: with derivatives where they are free."""
         if not batch.PLACE.stop:
             return tuple(self.usual.tolist())
@@ -234,13 +233,13 @@ class PlaceLimits:
         found += [(high - inside) - value] * bool(np.isfinite(high))
         return [row / self.unit for row in found]
 
-    def _sense(self, limit: AtTarget, batch: Generators) -> FloatArray | None:
+    def _sense(self, limit: AtTarget, batch: Generators | _Still) -> FloatArray | None:
         """On which side of the line of driver and coupler the motion to a toggle begins, (M, 1)."""
         if limit.name != "past_deg":
             return None
         end = float(self.inputs[limit.k])
         between = np.linspace(float(self.inputs[0 if limit.k else -1]), end, ALONG)
-        a, b = (Vector(each.x.value, each.y.value) for each in batch.joints(between))
+        a, b = (_values(each) for each in batch.joints(between))
         turned = np.unwrap(self.driver * a.angle_to(b - a), axis=1)
         line = np.pi * np.round(turned[:, -1:] / np.pi)
         return np.asarray(np.sign(turned[:, :1] - line))
@@ -255,7 +254,7 @@ class PlaceLimits:
         else:
             yield from (-row for row in limit.residuals(design))
 
-    def _over_motion(self, limit: AtTarget, batch: Generators) -> Iterator[Dual]:
+    def _over_motion(self, limit: AtTarget, batch: Generators | _Still) -> Iterator[Dual]:
         """A limit at inputs of the range, and where it is kept by least in between."""
 
         def rows(inputs: FloatArray) -> list[Dual]:
@@ -270,13 +269,12 @@ class PlaceLimits:
             near = np.clip(at, step, last - step) + step * np.array([-1.0, 0.0, 1.0])
             yield rows(_vertex(near, rows(near)[number].value, last))[number]
 
-    def _of_scale(self, batch: Generators) -> Iterator[Dual]:
+    def _of_scale(self, batch: Generators | _Still) -> Iterator[Dual]:
         """Lengths within their limits, where the scale is free."""
         if not self.lengths:
             return
         _, _, log, _ = self.place(batch)
-        every = np.eye(batch.UNKNOWNS)[:, None]
-        lengths = [0.0, *(Dual(column, every[[k]]) for k, column in enumerate(batch.columns[: batch.LINKS]))]
+        lengths = [0.0, *batch.numbers[: batch.LINKS]]
         for length, limits in zip(lengths, self.lengths, strict=True):
             full = log + length + float(np.log(self.unit))
             for sign, edge in zip((1.0, -1.0), limits, strict=True):
@@ -284,15 +282,51 @@ class PlaceLimits:
                     inside = INSIDE if limits[0] < limits[1] * (1 - 2 * INSIDE) else 0.0
                     yield sign * (full - float(np.log(edge))) - inside
         if self.offset is not None:
-            shape = [Dual(column, every[[k]]) for k, column in enumerate(batch.columns)]
-            offset = self.driver * self.unit * np.exp(log) * batch.sizes_of(shape)[3]
+            offset = self.driver * self.unit * np.exp(log) * batch.sizes_of(batch.numbers)[3]
             yield from self._sides(offset, self.offset)
+
+
+class _Still:
+    """Generators whose places alone change: nothing else has derivatives."""
+
+    PLACE, UNKNOWNS = slice(0, NUMBERS), NUMBERS
+
+    def __init__(self, batch: Placed) -> None:
+        self._batch, self._known = batch, dict[bytes, tuple[Vector, Vector]]()
+        self.shape, self.numbers = batch.shape[:, batch.PLACE], batch.columns
+        self.LINKS, self.sizes_of = batch.LINKS, batch.sizes_of
+
+    def __len__(self) -> int:
+        return len(self.shape)
+
+    def at(self, shape: FloatArray) -> _Still:
+        """The same in other places (M, 4)."""
+        moved = copy(self)
+        moved.shape = shape
+        return moved
+
+    def joints(self, inputs: FloatArray) -> tuple[Vector, Vector]:
+        """Those of the generators, of inputs for all (N,) computed once."""
+        key = inputs.tobytes()
+        found = self._known.get(key)
+        if found is None:
+            a, b = (_values(each) for each in self._batch.joints(inputs))
+            found = a, b
+            if inputs.ndim == 1:
+                self._known[key] = found
+        return found
+
+
+def _values(at: Vector) -> Vector:
+    """A vector without derivatives."""
+    x, y = (each.value if isinstance(each, Dual) else each for each in (at.x, at.y))
+    return Vector(x, y)
 
 
 class _InPlace(View):
     """Generators at some inputs, in the unit of the problem, with derivatives by the shape."""
 
-    def __init__(self, limits: PlaceLimits, batch: Generators, inputs: FloatArray) -> None:
+    def __init__(self, limits: PlaceLimits, batch: Generators | _Still, inputs: FloatArray) -> None:
         x, y, log, self.angle = limits.place(batch)
         a, b = batch.joints(inputs)
         unit, self.kind = limits.unit * np.exp(log), limits.kind

@@ -78,6 +78,12 @@ class Generators(ABC):
         return list(self.shape.T[..., None])
 
     @property
+    def numbers(self) -> list[Dual]:
+        """The same with their derivatives by the shape."""
+        every = np.broadcast_to(np.eye(self.UNKNOWNS), (len(self), self.UNKNOWNS, self.UNKNOWNS))
+        return [Dual(column, every[:, [k]]) for k, column in enumerate(self.columns)]
+
+    @property
     def first(self) -> FloatArray:
         """The first driver angle, shape (M,), rad."""
         return self.shape[:, -1]
@@ -140,8 +146,6 @@ class Generators(ABC):
 
     def joints(self, inputs: FloatArray) -> tuple[Vector, Vector]:
         """A and B on the ground at inputs (N,) or (M, N), with derivatives by the shape."""
-        every = np.broadcast_to(np.eye(self.UNKNOWNS), (len(self), self.UNKNOWNS, self.UNKNOWNS))
-        shape = [Dual(column, every[:, [k]]) for k, column in enumerate(self.columns)]
 
         def slope() -> FloatArray:
             moved = np.zeros((len(self), inputs.shape[-1], self.UNKNOWNS))
@@ -152,7 +156,7 @@ class Generators(ABC):
 
         turned = self.turns(inputs)
         theta2 = Dual(self.shape[:, -1:] + turned, slope)
-        (_, r2, r3, r4), assembly = self.closing(shape)
+        (_, r2, r3, r4), assembly = self.closing(self.numbers)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             crank = r2 * Vector(np.cos(theta2), np.sin(theta2))
             loop = self.dyad.closed(self.ground, crank, r3, r4, assembly[:, None])
