@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, ClassVar
@@ -16,7 +16,6 @@ from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.synth.loop.dyad import ClosingDyad
-from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.regions import hull_rows
 
 INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
@@ -193,12 +192,10 @@ def seen(dyad: ClosingDyad, o2: Any, o4: Any, slide_angle: Any, a: list[Any], b:
     )
 
 
-def columns_of(at: Vector, columns: Mapping[int, int]) -> list[Any]:
-    """Coordinates at the targets that have a column, by the number of the target."""
-    every: list[Any] = [None] * (max(columns) + 1)
-    for target, column in columns.items():
-        every[target] = at.x.column(column), at.y.column(column)
-    return every
+def needed(limits: Sequence[AtTarget], count: int) -> list[int]:
+    """The targets, of a number, at which limits see A and B."""
+    ends = {0, count - 1} if any(each.name == "past_deg" for each in limits) else set[int]()
+    return sorted(ends | {each.k for each in limits})
 
 
 def _beyond(value: Any, low: float, high: float) -> list[Any]:

@@ -25,7 +25,7 @@ from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import hull_parts, pairs_of
 from grashof.synth.quantities.target_constraints import (
     AtTarget,
-    columns_of,
+    needed,
     seen,
     target_constraints,
 )
@@ -207,8 +207,7 @@ class PlaceLimits:
         """The pairs that count."""
         if self.parts:
             return [*range(len(self.inputs))]
-        ends = {0, len(self.inputs) - 1} if any(each.name == "past_deg" for each in self.at) else set[int]()
-        return sorted(ends | {each.k for each in self.at})
+        return needed(self.at, len(self.inputs))
 
     def place(self, batch: Generators | _Still) -> tuple[Any, ...]:
         """The numbers of the place: with derivatives where they are free."""
@@ -346,10 +345,15 @@ class _InPlace(View):
             self.o4 = placed(Vector(still + 1.0, still))
 
     def seen(self, columns: Mapping[int, int] | None = None) -> Design:
-        """As limits at single targets see it; by default all inputs are a single one."""
-        a, b = ([(at.x, at.y)] if columns is None else columns_of(at, columns) for at in (self.a, self.b))
+        """As limits at single targets see it, by the column of each; by default a target at every input."""
+        tracks = list[list[Any]]()
+        for at in (self.a, self.b):
+            track: list[Any] = [(at.x, at.y)] if columns is None else [None] * (max(columns) + 1)
+            for target, column in (columns or {}).items():
+                track[target] = at.x.column(column), at.y.column(column)
+            tracks.append(track)
         o2, o4 = ((at.x, at.y) for at in (self.o2, self.o4 if self.kind.dyad.pinned else self.o2))
-        return seen(self.kind.dyad, o2, o4, self.angle, a, b)
+        return seen(self.kind.dyad, o2, o4, self.angle, *tracks)
 
 
 def _free(wanted: Requirements, moving: set[str], *, pinned: bool) -> FloatArray:
