@@ -56,7 +56,7 @@ def _missed_at(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     a, at_b, _ = (list(track.transpose(1, 2, 0)) for track in scaled.frame.outward(linkages.track))
     slide = scaled.kind.theta1_of(o2, o4, b) - np.pi / 2
     with np.errstate(all="ignore"):
-        design = seen(scaled.kind.dyad, at_o2, at_o4, slide, a, at_b)
+        design = seen(scaled.kind.dyad, at_o2, at_o4, slide, a, at_b, linkages.theta2.T)
         over = [row for limit in scaled.at_targets for row in limit(design)]
     missed: FloatArray = np.minimum(np.nan_to_num(np.maximum(over, 0.0), nan=1.0), FAR).sum(axis=0)
     return missed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 from typing import Any, ClassVar
 
 import numpy as np
@@ -76,11 +76,15 @@ class AtTarget:
         numbers = (number for number in self._sized(design) if number[1] < number[2])
         return [over for number in numbers for over in _beyond(*number)]
 
-    def residuals(self, design: Design) -> list[Any]:
-        """Excess in a search: of angles about as much as they are missed by, rad."""
+    def residuals(self, design: Design, sense: Any = None) -> list[Any]:
+        """Excess in a search: of angles about as much as they are missed by, rad.
+
+        By the `sense` of `past_from` where it is known, A and B are needed at this target alone.
+        """
         if self.name == "mechanical_advantage_min":
             return [self.advantage_share(design)]
-        return [self.steep * row for row in self(design)]
+        rows = self(design) if sense is None else [self.past_from(design, sense)]
+        return [self.steep * row for row in rows]
 
     @property
     def steep(self) -> float:
@@ -93,8 +97,13 @@ class AtTarget:
 
     def past(self, design: Design) -> Any:
         """By the side of the line on which the motion from, or to, the other end begins."""
-        cos = _of_coupler(design, self.k)[0]
-        ahead = _of_coupler(design, 0 if self.k else -1)[1] * cos  # nearly the sine of the angle there
+        way = range(self.k + 1) if self.k else range(len(design.a) - 1, -1, -1)
+        turned = sum(
+            _angle(_coupler(design, k), _coupler(design, after)) - (design.theta2[after] - design.theta2[k])
+            for k, after in pairwise(way)
+        )
+        cos, sin = _of_coupler(design, self.k)
+        ahead = np.arctan2(sin * cos, cos**2) - turned  # of the angle from driver to coupler, from the line
         return self.past_from(design, ahead / (ahead**2 + FLAT**2) ** 0.5)
 
     def past_from(self, design: Design, sense: Any) -> Any:
@@ -111,7 +120,7 @@ class AtTarget:
     def heading(self, design: Design) -> Any:
         """cos(half the range) - cos(direction - middle)."""
         low, high = np.radians(self.limits.coupler_angle_deg or (0.0, 0.0)).tolist()
-        coupler = _from(design.a[self.k], design.b[self.k])
+        coupler = _coupler(design, self.k)
         middle, half = (low + high) / 2, min((high - low) / 2, np.pi) - INSIDE
         ahead = (coupler[0] * float(np.cos(middle)) + coupler[1] * float(np.sin(middle))) / _square(
             coupler
@@ -168,11 +177,19 @@ def target_constraints(problem: Problem) -> tuple[AtTarget, ...]:
     )
 
 
-def seen(dyad: ClosingDyad, o2: Any, o4: Any, slide_angle: Any, a: list[Any], b: list[Any]) -> Design:
+def seen(
+    dyad: ClosingDyad,
+    o2: Any,
+    o4: Any,
+    slide_angle: Any,
+    a: list[Any],
+    b: list[Any],
+    theta2: Any = None,
+) -> Design:
     """Linkages as these limits see them, by coordinates: numbers, arrays, or those with derivatives.
 
     A and B at every target that counts, in the unit of the problem; `slide_angle` of kinds whose O4 is no
-    pivot.
+    pivot, and `theta2` where the sense of a toggle is not known.
     """
     nothing: Any = None
     return Design(
@@ -184,18 +201,12 @@ def seen(dyad: ClosingDyad, o2: Any, o4: Any, slide_angle: Any, a: list[Any], b:
         r4=nothing,
         theta1=nothing,
         coupler_point=nothing,
-        theta2=nothing,
+        theta2=theta2,
         a=a,
         b=b,
         p=(),
         slide_angle=None if dyad.pinned else slide_angle,
     )
-
-
-def needed(limits: Sequence[AtTarget], count: int) -> list[int]:
-    """The targets, of a number, at which limits see A and B."""
-    ends = {0, count - 1} if any(each.name == "past_deg" for each in limits) else set[int]()
-    return sorted(ends | {each.k for each in limits})
 
 
 def _beyond(value: Any, low: float, high: float) -> list[Any]:
@@ -255,6 +266,15 @@ def _of_coupler(design: Design, k: int) -> tuple[Any, Any]:
     lengths = (_square(driver) * _square(coupler)) ** 0.5
     dot = driver[0] * coupler[0] + driver[1] * coupler[1]
     return dot / lengths, _cross(driver, coupler) / lengths
+
+
+def _coupler(design: Design, k: int) -> tuple[Any, Any]:
+    return _from(design.a[k], design.b[k])
+
+
+def _angle(one: Any, other: Any) -> Any:
+    """From one vector to another, within half a turn, rad."""
+    return np.arctan2(_cross(one, other), one[0] * other[0] + one[1] * other[1])
 
 
 def _from(start: Any, end: Any) -> tuple[Any, Any]:

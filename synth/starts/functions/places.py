@@ -25,7 +25,6 @@ from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import hull_parts, pairs_of
 from grashof.synth.quantities.target_constraints import (
     AtTarget,
-    needed,
     seen,
     target_constraints,
 )
@@ -207,7 +206,7 @@ class PlaceLimits:
         """The pairs that count."""
         if self.parts:
             return [*range(len(self.inputs))]
-        return needed(self.at, len(self.inputs))
+        return sorted({each.k for each in self.at})
 
     def place(self, batch: Generators | _Still) -> tuple[Any, ...]:
         """The numbers of the place: with derivatives where they are free."""
@@ -248,10 +247,7 @@ class PlaceLimits:
             for value, limits in limit.numbers(design):
                 yield from self._sides(value, limits)
             return
-        if sense is not None:
-            yield -limit.steep * limit.past_from(design, sense)
-        else:
-            yield from (-row for row in limit.residuals(design))
+        yield from (-row for row in limit.residuals(design, sense))
 
     def _over_motion(self, limit: AtTarget, batch: Generators | _Still) -> Iterator[Dual]:
         """A limit at inputs of the range, and where it is kept by least in between."""

@@ -8,6 +8,7 @@ import pytest
 from grashof.analysis import verify
 from grashof.analysis.judge.at_targets import past_toggle
 from grashof.analysis.judge.design import Design, greatest
+from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import (
     Box,
     FourBar,
@@ -125,6 +126,25 @@ def test_judge_and_search_see_what_is_missed(name: str, kept: bool) -> None:
     assert all("at target 4" in each.what for each in verdict.defects)
     excess = greatest(AtTarget(asked, name, 3), Design.judged(LEG, verdict))
     assert (excess <= 0) == kept
+
+
+@pytest.mark.parametrize("target", [1, 5, 9])
+def test_the_search_knows_from_which_side_a_long_motion_comes(target: int) -> None:
+    """Over most of a turn a driver passes one line before it comes near the other."""
+    rng, seen = np.random.default_rng(target), 0
+    for _ in range(300):
+        linkage = random_full_crank(rng)
+        theta2 = rng.uniform(-3, 3) + rng.choice([-1, 1]) * np.linspace(0, rng.uniform(2, 6), 9)
+        assembly = np.full(9, int(linkage.assembly))
+        past = float(np.degrees(past_toggle(linkage, theta2, assembly, target - 1)))
+        if abs(past) < 40:
+            at = AtTarget(
+                TargetLimits(targets=[target], past_deg=(past - 1, past + 1)), "past_deg", target - 1
+            )
+            (excess,) = at(Design.of(linkage, theta2, assembly))
+            assert excess <= 0
+            seen += 1
+    assert seen > 50
 
 
 def test_limits_at_targets_that_cannot_be_are_refused_in_a_line() -> None:

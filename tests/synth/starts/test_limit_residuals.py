@@ -81,7 +81,7 @@ def test_residuals_of_a_limit_at_a_target(kind: str, name: str, number: int) -> 
     missed, over = model(batch)[0] - free(batch)[0], by_the_judge(scaled, target, batch)
     if name in IN_LENGTHS:
         np.testing.assert_allclose(missed, over, rtol=1e-6, atol=1e-9)
-    elif name == "past_deg":  # the judge follows the motion, the search knows its ends
+    elif name == "past_deg":  # the judge follows the motion, the search its targets
         assert np.mean((missed > 1e-9) == (over > 1e-9)) > 0.9
     else:
         np.testing.assert_array_equal(missed > 1e-9, over > 1e-9)
