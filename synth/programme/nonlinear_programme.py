@@ -171,6 +171,10 @@ def _stated(
         from grashof.synth.programme.regions import require_regions
 
         require_regions(build, form, x, places)
+    if any(getattr(each, "concave", None) for each in constraints):
+        from grashof.synth.programme.regions import require_pieces
+
+        require_pieces(build, places, constraints)
     require_own(build, form, x, places, constraints)
     cost = cost_of_goals(build, form, x, places)
     if form.own_goal and own_objective is not None:

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import casadi as ca
 import numpy as np
 
+from grashof.problems import Region
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.builder import Builder
 from grashof.synth.programme.constraints import Positions, Symbols
 from grashof.synth.programme.start import Start
-from grashof.synth.programme.structure import Form
+from grashof.synth.programme.structure import MOST_SIDES, Form
 from grashof.synth.programme.unknowns import INSET, Unknowns
 from grashof.synth.quantities.convex import piece_about
 from grashof.synth.quantities.regions import hull_rows
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.target_constraints import AtTarget
 
 
 def require_regions(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
@@ -39,6 +42,31 @@ def require_regions(build: Builder, form: Form, x: Unknowns, places: Positions) 
                 build.require((name,), beyond, -beyond)
 
 
+def require_pieces(build: Builder, places: Positions, limits: Sequence[object]) -> None:
+    """A joint lies in a convex piece of its polygon at a single target, where that is concave."""
+    for limit in limits:
+        region = limit.concave if isinstance(limit, AtTarget) else None
+        if isinstance(limit, AtTarget) and region is not None:
+            count = min(len(region.corners), MOST_SIDES)
+            planes = build.parameter(partial(_piece, limit, region, count), 3 * count)
+            at = getattr(places, limit.name)[limit.k]
+            for plane in ca.vertsplit(planes, 3):
+                build.require((limit.group,), plane[0] * at[0] + plane[1] * at[1] - plane[2])
+
+
+def _piece(limit: AtTarget, region: Region, count: int, scaled: ScaledProblem, start: Start) -> FloatArray:
+    """Half-planes about a joint at one target of a start."""
+    here = region.moved(scaled.frame.origin, scaled.frame.scale)
+    place = start.track["ab".index(limit.name)][limit.k]
+    return _inset(piece_about(here, complex(place), count)).ravel()
+
+
+def _inset(planes: FloatArray) -> FloatArray:
+    """Half-planes moved inwards, so that rounding leaves no joint outside."""
+    planes[..., 2] += np.where(planes[..., :2].any(axis=-1), INSET, 0.0)
+    return planes
+
+
 def _planes(name: str, count: int, scaled: ScaledProblem, start: Start) -> FloatArray:
     """Half-planes (nx, ny, c) about the places of a joint at a start, or the line of its segment."""
     region = scaled.wanted.regions[name]
@@ -46,9 +74,7 @@ def _planes(name: str, count: int, scaled: ScaledProblem, start: Start) -> Float
     if not count:
         rows = [(normal.real, normal.imag, limits[0]) for normal, limits in hull_rows(region)]
         return np.ravel(rows * len(places))
-    planes = np.array([piece_about(region, each, count) for each in places])
-    planes[..., 2] += np.where(planes[..., :2].any(axis=-1), INSET, 0.0)
-    return planes.ravel()
+    return _inset(np.array([piece_about(region, each, count) for each in places])).ravel()
 
 
 def _at(name: str, scaled: ScaledProblem, start: Start) -> ComplexArray:

@@ -14,6 +14,7 @@ from grashof.synth.loop.dyad import coupler_of
 from grashof.synth.programme.user_functions import FAR, own_violations
 from grashof.synth.quantities.along_motion import ALONG, allowed_along, along_motion, unit_along
 from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.regions import outside
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened, depth_in, inside, points_kept_out
 from grashof.synth.quantities.target_constraints import seen
@@ -53,11 +54,16 @@ def _missed_at(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """Excess over limits at single targets, (n,)."""
     o2, o4, _, b, _ = linkages.points.T
     at_o2, at_o4 = (scaled.frame.outward(pivot).T for pivot in (o2, o4))
-    a, at_b, _ = (list(track.transpose(1, 2, 0)) for track in scaled.frame.outward(linkages.track))
+    a, at_b, p = (list(track.transpose(1, 2, 0)) for track in scaled.frame.outward(linkages.track))
     slide = scaled.kind.theta1_of(o2, o4, b) - np.pi / 2
     with np.errstate(all="ignore"):
-        design = seen(scaled.kind.dyad, at_o2, at_o4, slide, a, at_b, linkages.theta2.T)
+        design = seen(scaled.kind.dyad, at_o2, at_o4, slide, a, at_b, p, linkages.theta2.T)
         over = [row for limit in scaled.at_targets for row in limit(design)]
+        over += [
+            outside(region, *getattr(design, limit.name)[limit.k]) / limit.size
+            for limit in scaled.at_targets
+            if (region := limit.concave) is not None
+        ]
     missed: FloatArray = np.minimum(np.nan_to_num(np.maximum(over, 0.0), nan=1.0), FAR).sum(axis=0)
     return missed
 

@@ -45,6 +45,17 @@ class AtTarget:
             return excess if isinstance(excess, list) else [excess]
         return [over for number in self._sized(design) for over in _beyond(*number)]
 
+    @property
+    def concave(self) -> Region | None:
+        """The polygon of A or B that is smaller than its convex hull, by which `numbers` limits it."""
+        region = getattr(self.limits, self.name)
+        if not isinstance(region, Region) or region.on is not None or self.name not in ("a", "b"):
+            return None
+        # Here, not above: shapely takes a while to import, and few problems have areas.
+        from grashof.synth.quantities.convex import is_convex
+
+        return None if is_convex(region) else region
+
     def numbers(self, design: Design) -> list[tuple[Any, Limits]]:
         """Numbers that have limits, lengths; none of limits of other kinds."""
         limited = getattr(self.limits, self.name)
@@ -184,11 +195,12 @@ def seen(
     slide_angle: Any,
     a: list[Any],
     b: list[Any],
+    p: Sequence[Any] = (),
     theta2: Any = None,
 ) -> Design:
     """Linkages as these limits see them, by coordinates: numbers, arrays, or those with derivatives.
 
-    A and B at every target that counts, in the unit of the problem; `slide_angle` of kinds whose O4 is no
+    A, B and P at every target that counts, in the unit of the problem; `slide_angle` of kinds whose O4 is no
     pivot, and `theta2` where the sense of a toggle is not known.
     """
     nothing: Any = None
@@ -204,7 +216,7 @@ def seen(
         theta2=theta2,
         a=a,
         b=b,
-        p=(),
+        p=p,
         slide_angle=None if dyad.pinned else slide_angle,
     )
 

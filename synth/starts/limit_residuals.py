@@ -88,11 +88,12 @@ class Placement(View):
         """B at every target."""
         return self._target.kind.dyad.b(self, self.a, self._coupler / self.r1)
 
-    def joints(self, k: int) -> tuple[Vector, Vector]:
-        """A and B at one target, which take less time than those at every one."""
+    def points_at(self, k: int) -> tuple[Vector, Vector, Vector]:
+        """A, B and P at one target, which take less time than those at every one."""
         a = self.o2 + self._crank.turned(self.relative.theta2.column(k))
-        along = self._ground.turned(Dual(np.angle(self.loop.e3[:, [k]]), self.by_theta3[:, [k]])) / self.r1
-        return a, self._target.kind.dyad.b(self, a, along)
+        theta3 = Dual(np.angle(self.loop.e3[:, [k]]), self.by_theta3[:, [k]])
+        b = self._target.kind.dyad.b(self, a, self._ground.turned(theta3) / self.r1)
+        return a, b, a + self.ap.turned(theta3)
 
     @cached_property
     def _coupler(self) -> Vector:
@@ -175,9 +176,9 @@ def _rows_at(target: SearchTargets, at: Placement) -> Iterator[Dual]:
     def outward(place: Vector) -> tuple[Dual, Dual]:
         return scale * place.x + origin.real, scale * place.y + origin.imag
 
-    tracks: tuple[list[Any], list[Any]] = [None] * len(target.points), [None] * len(target.points)
+    tracks: list[list[Any]] = [[None] * len(target.points) for _ in range(3)]
     for k in {limit.k for limit in target.at}:
-        for track, place in zip(tracks, at.joints(k), strict=True):
+        for track, place in zip(tracks, at.points_at(k), strict=True):
             track[k] = outward(place)
     pivots = outward(at.o2), outward(at.o4)
     design = seen(target.kind.dyad, *pivots, at.theta1 - np.pi / 2, *tracks)

@@ -13,6 +13,7 @@ from grashof.problems import (
     MotionTask,
     PathTask,
     Problem,
+    Region,
     Requirements,
     Rotatability,
     TargetLimits,
@@ -51,6 +52,21 @@ def test_a_place_at_one_target_alone_binds_there() -> None:
     best = synthesize(bound, seed=0, enough=5).best
     there = solve_position(best.linkage, best.verdict.theta2).a
     assert there[0, 0] >= box.x[0] - 1e-9
+
+
+@pytest.mark.slow
+def test_a_concave_polygon_at_one_target_is_kept() -> None:
+    """Where the hull is larger, all designs ended in the notch, and were refused."""
+    task = MotionTask([[0, 0], [2, 1.5], [4, 2], [5, 3.5], [5, 5]], np.radians([0, 15, 40, 60, 95]))
+    notched = Region(inside=[[-9, -9], [9, -9], [9, 9], [0, 2], [-9, 9]])
+    wanted = Requirements(exact=False, rotatability="any", at=(TargetLimits(targets=[5], b=notched),))
+    result = synthesize(Problem(task=task, requirements=wanted), seed=0)
+    assert min(each.values["error"] for each in result.candidates) < 0.14
+    for each in result.candidates:
+        (theta2,), (assembly,) = each.verdict.theta2[4:], each.verdict.assembly[4:]
+        (x, y) = solve_position(each.linkage, theta2, assembly).b
+        assert max(abs(x), abs(y)) <= 9 + 1e-9
+        assert y <= 2 + abs(x) * 7 / 9 + 1e-9
 
 
 def direction(design: Candidate, theta2: float, target: int) -> float:

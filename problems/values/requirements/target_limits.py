@@ -112,6 +112,8 @@ class TargetLimits:
             ]
         beyond = [number for number in self.targets if number > len(task)]
         wrong = [f"{where}.targets has {number}; the last target is {len(task)}" for number in beyond]
+        if isinstance(self.distances, Distances):
+            wrong += self.distances.wrong(task, f"{where}.distances")
         for name in self.limited:
             if task.at_limits and (why := _IN_LINE.get(name)):
                 wrong.append(f"{where}.{name} does not go with a stroke; in a limit position {why}")

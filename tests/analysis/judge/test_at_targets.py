@@ -12,6 +12,7 @@ from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import (
     Box,
     FourBar,
+    FunctionTask,
     MotionTask,
     PathTask,
     Problem,
@@ -159,6 +160,9 @@ def test_limits_at_targets_that_cannot_be_are_refused_in_a_line() -> None:
         wanted = Requirements(at=(at,), order=order)
         with pytest.raises(ProblemError, match=line):
             Problem(task=three, requirements=wanted, mechanism=kind)
+    of_p = TargetLimits(targets=[2], distances={"b-p": (1, 2)})
+    with pytest.raises(ProblemError, match=r"at\[0\].distances.b-p does not apply to a function; remove it"):
+        Problem(task=FunctionTask([0, 1, 2], [0, 1, 1.5]), requirements=Requirements(at=(of_p,)))
     for wrong, line in (
         ({"targets": [0], "past_deg": (1, 2)}, "targets"),
         ({"targets": [], "past_deg": (1, 2)}, "a list of numbers of targets"),

@@ -20,6 +20,7 @@ LIMITS: dict[str, Any] = {
     "a": PLACE,
     "b": Region(inside=((100, -30), (180, -10), (140, 50))),
     "distances": {"a-o4": (40, 60), "b-o2": 28},
+    "distances of P": {"o2-p": (10, 20), "b-p": (30, 50)},
     "instant_centre": PLACE,
     "past_deg": (2, 5),
     "coupler_angle_deg": (30, 50),
@@ -27,7 +28,7 @@ LIMITS: dict[str, Any] = {
     "transmission_min_deg": 50,
     "mechanical_advantage_min": 3,
 }
-IN_LENGTHS = ("a", "distances", "instant_centre")
+IN_LENGTHS = ("a", "distances", "distances of P", "instant_centre")
 HAD = [
     *(("four-bar", name) for name in LIMITS),
     *(("slider-crank", name) for name in ("a", "b", "past_deg", "coupler_angle_deg", "coupler_rate")),
@@ -41,7 +42,7 @@ NEAR = 3.0  # sizes from the points: others are no linkages of interest
 
 def stated(kind: str, name: str, target: int) -> ScaledProblem:
     places = UNIT * points_along(np.linspace(0, 4, 6), np.random.default_rng(3)) + MIDDLE
-    at = (TargetLimits(targets=[target], **{name: LIMITS[name]}),)
+    at = (TargetLimits(targets=[target], **{name.split()[0]: LIMITS[name]}),)
     wanted = Requirements(rotatability="any", exact=False, at=at)
     task = PathTask(np.column_stack([places.real, places.imag]))
     return ScaledProblem.of(Problem(task=task, requirements=wanted, mechanism=kind))
