@@ -13,7 +13,7 @@ from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
 from grashof.synth.starts.functions.places import PlaceLimits
-from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
+from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, best_varied, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.optima import STEPS, Aim, Ends, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
@@ -84,13 +84,13 @@ class Optima:
             batch, square = fitted(
                 desired, begun, self.limits.of, pull=pull, held=held, taken=ROUGH_STEPS - 1
             )
-            found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
+            found.append(batch[best_varied(batch, square, CELL)[:TRIED]])
         batch = self.aims.made.joined(found)
         square = desired.square(desired.errors(batch))
         if self.limits.beyond_shape:
             missed = np.maximum(-self.limits.of(batch).value.min(axis=1), 0.0)
             square = np.sqrt(square / desired.weights.sum()) + missed
-        return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
+        return batch[best_varied(batch, np.nan_to_num(square, nan=np.inf), CELL)]
 
     @property
     def by_pairs(self) -> bool:
@@ -231,8 +231,9 @@ class _Batch:
 
 def _hopeful(tried: Ends) -> IntArray:
     """The most promising, best first."""
-    best = _apart(tried, tried.worth)
-    hopeful: IntArray = best[tried.worth[best] <= HOPELESS * tried.worth.min(initial=np.inf) + MET][:BASINS]
+    near = tried.worth <= HOPELESS * tried.worth.min(initial=np.inf) + MET
+    best = np.flatnonzero(near & np.isfinite(tried.worth))
+    hopeful: IntArray = best[best_varied(tried.generators[best], tried.worth[best], CELL)][:BASINS]
     return hopeful
 
 

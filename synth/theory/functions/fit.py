@@ -18,6 +18,7 @@ Limits: TypeAlias = Callable[[Generators], Dual]  # as `ShapeLimits.of`
 HALVES = ((6, 400), (12, 120), (20, 48))  # after these steps this number of the best continue
 STEPS = 60
 CELL = 0.1  # in logarithms of lengths and rad: of generators in one cell only the best continues
+VARIED = 0.5  # the same, of those that are different in kind
 FLAT = 1e-15  # share of the square below which a step gains nothing
 _TINY = 1e-30
 
@@ -123,6 +124,17 @@ def best_apart(batch: Generators, square: FloatArray, cell: float) -> IntArray:
     first = np.unique(keys, axis=0, return_index=True)[1]
     best: IntArray = order[np.sort(first)]
     return best
+
+
+def best_varied(batch: Generators, square: FloatArray, cell: float) -> IntArray:
+    """The same, of each large cell (`VARIED`) the best before all others: a wide valley is not all there is.
+
+    Both parts are best first.
+    """
+    fine = best_apart(batch, square, cell)
+    ahead = best_apart(batch[fine], square[fine], VARIED)
+    order: IntArray = np.concatenate([fine[ahead], np.delete(fine, ahead)])
+    return order
 
 
 @dataclass(frozen=True, slots=True)
