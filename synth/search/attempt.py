@@ -133,7 +133,11 @@ def _clear(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
 
 
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
-    """Solve; tighten and repeat while a single requirement is narrowly missed."""
+    """Solve; tighten and repeat while a single requirement is narrowly missed.
+
+    First with driver angles that the judge need not find, which converges sooner; with those, from there,
+    where a requirement is missed.
+    """
     strict, start = start, start.under(loose=any(Form.of(scaled, start).nearest))
     solve = solve_by_exchange(scaled, start)
     done = yield from polished_and_judged(scaled, start, solve, number)
