@@ -135,13 +135,19 @@ def _clear(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
     """Solve; tighten and repeat while a single requirement is narrowly missed.
 
-    First with driver angles that the judge need not find, which converges sooner; with those, from there,
-    where a requirement is missed.
+    Driver angles need not be those that the judge will find where that converges sooner, or alone. Where the
+    error is to be least this comes first, as it leaves the least error; a goal that depends on these angles
+    would be worse for them.
     """
-    strict, start = start, start.under(loose=any(Form.of(scaled, start).nearest))
+    strict, by_error = start, not start.terms.bounded
+    may_loosen = any(Form.of(scaled, start).nearest)
+    start = strict.under(loose=may_loosen and by_error)
     solve = solve_by_exchange(scaled, start)
+    if may_loosen and not by_error and solve.status not in SOLVED and not stop_requested():
+        start = strict.under(loose=True)
+        solve = solve_by_exchange(scaled, start)
     done = yield from polished_and_judged(scaled, start, solve, number)
-    if start.terms.loose and not done.verified and not stop_requested():
+    if may_loosen and by_error and not done.verified and not stop_requested():
         strict = begun_from(strict, solve) if solve.status in SOLVED else strict
         again = solve_by_exchange(scaled, strict)
         if again.status in SOLVED:

@@ -38,6 +38,14 @@ def errors_of(result: Result) -> FloatArray:
     return np.sqrt([each.verdict.square / len(result.problem.task) for each in result.candidates])
 
 
+def test_more_transmission_is_sought_where_the_judge_puts_the_driver() -> None:
+    """Solved with other driver angles, the best within 1.2 times the least error had 38.5 deg."""
+    result = synthesize(problem_of(stated("conv_boxed"), "here", "conv_boxed"))
+    errors = errors_of(result)
+    mu = [np.degrees(each.verdict.transmission_min_task) for each in result.candidates]
+    assert max(np.array(mu)[errors <= 1.2 * errors.min()]) > 42.5
+
+
 def mu_of(candidate: Candidate) -> float:
     return float(np.degrees(candidate.verdict.transmission_min_cycle))
 
