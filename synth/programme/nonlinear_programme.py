@@ -34,6 +34,7 @@ from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
 from grashof.synth.programme.user_functions import numpy_on_symbols
 from grashof.synth.quantities.along_motion import overlooked
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.target_constraints import AtTarget
 from grashof.synth.theory.stopping import StopRequested, raise_if_stopped, stop_requested
 
 LONG = 40  # targets: programmes of more can be stopped, and are not begun after a request to stop
@@ -171,10 +172,11 @@ def _stated(
         from grashof.synth.programme.regions import require_regions
 
         require_regions(build, form, x, places)
-    if any(getattr(each, "concave", None) for each in constraints):
+    concave = [each for each in constraints if isinstance(each, AtTarget) and each.concave is not None]
+    if concave:
         from grashof.synth.programme.regions import require_pieces
 
-        require_pieces(build, places, constraints)
+        require_pieces(build, places, concave)
     require_own(build, form, x, places, constraints)
     cost = cost_of_goals(build, form, x, places)
     if form.own_goal and own_objective is not None:

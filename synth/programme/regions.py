@@ -42,11 +42,10 @@ def require_regions(build: Builder, form: Form, x: Unknowns, places: Positions) 
                 build.require((name,), beyond, -beyond)
 
 
-def require_pieces(build: Builder, places: Positions, limits: Sequence[object]) -> None:
+def require_pieces(build: Builder, places: Positions, limits: Sequence[AtTarget]) -> None:
     """A joint lies in a convex piece of its polygon at a single target, where that is concave."""
     for limit in limits:
-        region = limit.concave if isinstance(limit, AtTarget) else None
-        if isinstance(limit, AtTarget) and region is not None:
+        if (region := limit.concave) is not None:
             count = min(len(region.corners), MOST_SIDES)
             planes = build.parameter(partial(_piece, limit, region, count), 3 * count)
             at = getattr(places, limit.name)[limit.k]

@@ -17,7 +17,7 @@ from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import outside
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened, depth_in, inside, points_kept_out
-from grashof.synth.quantities.target_constraints import seen
+from grashof.synth.quantities.target_constraints import design_of
 from grashof.synth.quantities.wanted_torque import DEVIATIONS
 
 # Driver angles, the targets' ends among them, and places along a link or a side of the body: of all linkages,
@@ -57,7 +57,7 @@ def _missed_at(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     a, at_b, p = (list(track.transpose(1, 2, 0)) for track in scaled.frame.outward(linkages.track))
     slide = scaled.kind.theta1_of(o2, o4, b) - np.pi / 2
     with np.errstate(all="ignore"):
-        design = seen(scaled.kind.dyad, at_o2, at_o4, slide, a, at_b, p, linkages.theta2.T)
+        design = design_of(scaled.kind.dyad, at_o2, at_o4, slide, a, at_b, p, linkages.theta2.T)
         over = [row for limit in scaled.at_targets for row in limit(design)]
         over += [
             outside(region, *getattr(design, limit.name)[limit.k]) / limit.size

@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.analysis.judge.design import Design
 from grashof.problems import Box, Problem, Region
-from grashof.problems.values.arrays import Limits
+from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
@@ -188,7 +188,7 @@ def target_constraints(problem: Problem) -> tuple[AtTarget, ...]:
     )
 
 
-def seen(
+def design_of(
     dyad: ClosingDyad,
     o2: Any,
     o4: Any,
@@ -219,6 +219,12 @@ def seen(
         p=p,
         slide_angle=None if dyad.pinned else slide_angle,
     )
+
+
+def side_of_line(turned: FloatArray) -> FloatArray:
+    """The sense of `past_from` (n, 1), by angles from driver to coupler over a motion (n, K), unwrapped."""
+    line = np.pi * np.round(turned[:, -1:] / np.pi)
+    return np.asarray(np.sign(turned[:, :1] - line))
 
 
 def _beyond(value: Any, low: float, high: float) -> list[Any]:

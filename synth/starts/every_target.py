@@ -163,8 +163,9 @@ def _overstepped(
     by_z = np.zeros((n, 3, 11), dtype=np.complex128)
     for k in range(3):
         by_z[:, k, 3 + 2 * k], by_z[:, k, 4 + 2 * k] = 1, 1j
-    at_ends = replace(target, at=())  # limits at targets between are left to the programme
-    return oversteps(at_ends, Placement(target, loop, by_theta2, by_theta3_of(loop, by_theta2), z, by_z))
+    placed = Placement(target, loop, by_theta2, by_theta3_of(loop, by_theta2), z, by_z)
+    # limits at single targets, most of them between the ends, are left to the programme
+    return oversteps(replace(target, at=()) if target.at else target, placed)
 
 
 def _stepped(target: SearchTargets, batch: Batch, model: Linear, damping: FloatArray, shape: int) -> Batch:

@@ -15,7 +15,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Sizes
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import LOGARITHMIC, View
-from grashof.synth.quantities.target_constraints import AtTarget, seen
+from grashof.synth.quantities.target_constraints import AtTarget, design_of, side_of_line
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
@@ -181,7 +181,7 @@ def _rows_at(target: SearchTargets, at: Placement) -> Iterator[Dual]:
         for track, place in zip(tracks, at.points_at(k), strict=True):
             track[k] = outward(place)
     pivots = outward(at.o2), outward(at.o4)
-    design = seen(target.kind.dyad, *pivots, at.theta1 - np.pi / 2, *tracks)
+    design = design_of(target.kind.dyad, *pivots, at.theta1 - np.pi / 2, *tracks)
     for limit in target.at:
         for row in limit.residuals(design, _sense(at.loop, limit)):
             yield _outside(row, (-np.inf, 0.0))
@@ -193,7 +193,7 @@ def _sense(loop: Loop, limit: AtTarget) -> FloatArray | None:
         return None
     way = slice(limit.k + 1) if limit.k else slice(None, None, -1)
     turned = np.unwrap(np.angle(loop.e3[:, way]), axis=1) - loop.theta2[:, way]
-    return np.asarray(np.sign(turned[:, :1] - np.pi * np.round(turned[:, -1:] / np.pi)))
+    return side_of_line(turned)
 
 
 def _outside(row: Dual, limits: Limits) -> Dual:

@@ -65,15 +65,15 @@ def nearest_to_poses(linkage: Linkage, task: Task) -> Nearest:
     angle, miss = _descend(linkage, task, ranges, np.broadcast_to(guess, signs.shape), signs)
     theta2, assembly = _least(task, angle, signs, miss)
     missed = np.flatnonzero(~_met(miss, task))
-    bottoms = dict[int, FloatArray]()
+    valleys = dict[int, FloatArray]()
     for rows in np.array_split(missed, -(-missed.size * len(task) // _AT_ONCE) or 1):
         if not rows.size:
             break
         more = _valleys(linkage[rows], task)
         every = zip((angle[rows], signs[rows], miss[rows]), more, strict=True)
         theta2[rows], assembly[rows] = _least(task, *(np.concatenate(each, axis=1) for each in every))
-        bottoms |= {row: _on_own(linkage[row], *more[:2], k) for k, row in enumerate(rows.tolist())}
-    return Nearest(Targets.of(linkage, task, theta2, assembly), bottoms)
+        valleys |= {row: _on_own(linkage[row], *more[:2], k) for k, row in enumerate(rows.tolist())}
+    return Nearest(Targets.of(linkage, task, theta2, assembly), valleys)
 
 
 def _on_own(linkage: Linkage, angle: FloatArray, signs: IntArray, row: int) -> FloatArray:
@@ -170,10 +170,9 @@ def poses_in_order(
 ) -> tuple[Targets, TaskMotion]:
     """Driver angles that do not go back, within one turn, with the least weighted squares.
 
-    On the own assembly and in one range; `nearest` and `motion` where there are none. `valleys` are those of
-    `Nearest`, if known. Poses free in part are
+    On the own assembly and in one range; `nearest` and `motion` where there are none. Poses free in part are
     met at several angles, so nearest places may be out of order: dynamic programming over samples and valleys
-    of the misses, then Newton's method in all angles.
+    of the misses, then Newton's method in all angles. `valleys` are those of `Nearest`, if known.
     """
     own = np.full(len(task), int(linkage.assembly))
     found = list[tuple[FloatArray, float]]()
@@ -199,18 +198,18 @@ def poses_in_order(
 
 
 def _by_range(
-    linkage: Linkage, task: Task, bottoms: FloatArray
+    linkage: Linkage, task: Task, valleys: FloatArray
 ) -> list[tuple[FloatArray, FloatArray, float, float]]:
     """Driver angles (M,) and weighted misses there (N, M), with the ends of each range of the driver.
 
-    The angles are samples, and those of valleys (K,).
+    The angles are samples, and those of the valleys (K,).
     """
     ranges = list[tuple[FloatArray, float, float]]()
     if closes_everywhere(linkage):
         around = linkage.theta1 + np.linspace(0, TURN, _PLACES, endpoint=False)
-        ranges.append((np.concatenate([around, bottoms]) % TURN, -np.inf, np.inf))
+        ranges.append((np.concatenate([around, valleys]) % TURN, -np.inf, np.inf))
     else:
-        index, inside = range_index(linkage, bottoms)
+        index, inside = range_index(linkage, valleys)
         ranges += [
             (np.concatenate([closer_at_ends(low, high, _PLACES), inside[index == number]]), low, high)
             for number, (low, high) in enumerate(driver_ranges(linkage).tolist())

@@ -23,11 +23,7 @@ from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Part, View, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import hull_parts, pairs_of
-from grashof.synth.quantities.target_constraints import (
-    AtTarget,
-    seen,
-    target_constraints,
-)
+from grashof.synth.quantities.target_constraints import AtTarget, design_of, side_of_line, target_constraints
 from grashof.synth.theory.functions.limits import joined_rows
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.placed import NUMBERS, PLACED, Placed
@@ -125,21 +121,21 @@ class PlaceLimits:
         rough = replace(self, inputs=self.inputs[some]) if not self.at else self
         made = PLACED[type(batch)].of(batch, self.usual)
         turns = np.linspace(0, 2 * np.pi, TURNS, endpoint=False) if self.free[3] else np.zeros(1)
-        still, least = _Still(made), np.full(len(batch), np.inf)
-        best = still.shape
+        rigid, least = _Rigid(made), np.full(len(batch), np.inf)
+        best = rigid.shape
         for turn in turns:
-            there, missed = rough._moved(still.at(still.shape + np.array([0.0, 0.0, 0.0, turn])))
+            there, missed = rough._moved(rigid.at(rigid.shape + np.array([0.0, 0.0, 0.0, turn])))
             better = missed < least
             least, best = np.where(better, missed, least), np.where(better[:, None], there, best)
         shape = made.shape.copy()
         shape[:, made.PLACE] = best
         return made.changed(shape)
 
-    def _moved(self, still: _Still) -> tuple[FloatArray, FloatArray]:
+    def _moved(self, rigid: _Rigid) -> tuple[FloatArray, FloatArray]:
         """Places after steps of Gauss and Newton, and their squared misses."""
-        square = np.full(len(still), np.inf)
+        square = np.full(len(rigid), np.inf)
         for _ in range(STEPS):
-            rows = self.rows(still)
+            rows = self.rows(rigid)
             short = np.nan_to_num(np.minimum(rows.value, 0.0), nan=-1e3)
             square = (short**2).sum(axis=1)
             slope = np.nan_to_num(rows.slope * (short < 0)[..., None])
@@ -148,8 +144,8 @@ class PlaceLimits:
             normal = normal + (1e-6 * scale + 1e-12)[:, None, None] * np.eye(4)
             step = np.linalg.solve(normal, (slope.swapaxes(1, 2) @ short[..., None]))[..., 0]
             step = np.clip(step, [-np.inf, -np.inf, -1.0, -1.0], [np.inf, np.inf, 1.0, 1.0])
-            still = still.at(still.shape - step * self.free)
-        return still.shape, square
+            rigid = rigid.at(rigid.shape - step * self.free)
+        return rigid.shape, square
 
     def of_linkage(self, batch: Generators, linkage: Any) -> Generators:
         """A generator where its linkage lies."""
@@ -173,7 +169,7 @@ class PlaceLimits:
         o4 = _inside(wanted.o4, o2.x[0] + length * np.cos(angle), o2.y[0] + length * np.sin(angle))
         return replace(wanted, o2=o2, o4=o4)
 
-    def rows(self, batch: Generators | _Still) -> Dual:
+    def rows(self, batch: Generators | _Rigid) -> Dual:
         """All of them (M, L), in usual units or rad."""
         with np.errstate(all="ignore"):
             found = self._rows(batch)
@@ -184,7 +180,7 @@ class PlaceLimits:
 
         return Dual(found.value, slope)
 
-    def _rows(self, batch: Generators | _Still) -> Dual:
+    def _rows(self, batch: Generators | _Rigid) -> Dual:
         found = list[Dual]()
         number = {k: row for row, k in enumerate(self._numbers)}
         if self.parts or self.at:
@@ -193,7 +189,7 @@ class PlaceLimits:
                 value = np.sqrt(part.of(view)) if part.squared else part.of(view)
                 found += self._sides(value, limits)
             if self.at:
-                design = view.seen(number)
+                design = view.design(number)
                 for each in self.at:
                     found += self._of_target(each, design, self._sense(each, batch))
         for each in self.along:
@@ -208,7 +204,7 @@ class PlaceLimits:
             return [*range(len(self.inputs))]
         return sorted({each.k for each in self.at})
 
-    def place(self, batch: Generators | _Still) -> tuple[Any, ...]:
+    def place(self, batch: Generators | _Rigid) -> tuple[Any, ...]:
         """The numbers of the place: with derivatives where they are free."""
         if not batch.PLACE.stop:
             return tuple(self.usual.tolist())
@@ -231,16 +227,14 @@ class PlaceLimits:
         found += [(high - inside) - value] * bool(np.isfinite(high))
         return [row / self.unit for row in found]
 
-    def _sense(self, limit: AtTarget, batch: Generators | _Still) -> FloatArray | None:
+    def _sense(self, limit: AtTarget, batch: Generators | _Rigid) -> FloatArray | None:
         """On which side of the line of driver and coupler the motion to a toggle begins, (M, 1)."""
         if limit.name != "past_deg":
             return None
         end = float(self.inputs[limit.k])
         between = np.linspace(float(self.inputs[0 if limit.k else -1]), end, ALONG)
         a, b = (_values(each) for each in batch.joints(between))
-        turned = np.unwrap(self.driver * a.angle_to(b - a), axis=1)
-        line = np.pi * np.round(turned[:, -1:] / np.pi)
-        return np.asarray(np.sign(turned[:, :1] - line))
+        return side_of_line(np.unwrap(self.driver * a.angle_to(b - a), axis=1))
 
     def _of_target(self, limit: AtTarget, design: Design, sense: FloatArray | None = None) -> Iterator[Dual]:
         if limit.name in LENGTHS:
@@ -249,11 +243,11 @@ class PlaceLimits:
             return
         yield from (-row for row in limit.residuals(design, sense))
 
-    def _over_motion(self, limit: AtTarget, batch: Generators | _Still) -> Iterator[Dual]:
+    def _over_motion(self, limit: AtTarget, batch: Generators | _Rigid) -> Iterator[Dual]:
         """A limit at inputs of the range, and where it is kept by least in between."""
 
         def rows(inputs: FloatArray) -> list[Dual]:
-            return list(self._of_target(limit, _InPlace(self, batch, inputs).seen()))
+            return list(self._of_target(limit, _InPlace(self, batch, inputs).design()))
 
         inputs = np.linspace(0.0, float(self.inputs[-1]), ALONG)
         every = rows(inputs)
@@ -264,7 +258,7 @@ class PlaceLimits:
             near = np.clip(at, step, last - step) + step * np.array([-1.0, 0.0, 1.0])
             yield rows(_vertex(near, rows(near)[number].value, last))[number]
 
-    def _of_scale(self, batch: Generators | _Still) -> Iterator[Dual]:
+    def _of_scale(self, batch: Generators | _Rigid) -> Iterator[Dual]:
         """Lengths within their limits, where the scale is free."""
         if not self.lengths:
             return
@@ -281,8 +275,8 @@ class PlaceLimits:
             yield from self._sides(offset, self.offset)
 
 
-class _Still:
-    """Generators whose places alone change: nothing else has derivatives."""
+class _Rigid:
+    """Generators that move as rigid bodies: their places alone have derivatives."""
 
     PLACE, UNKNOWNS = slice(0, NUMBERS), NUMBERS
 
@@ -294,7 +288,7 @@ class _Still:
     def __len__(self) -> int:
         return len(self.shape)
 
-    def at(self, shape: FloatArray) -> _Still:
+    def at(self, shape: FloatArray) -> _Rigid:
         """The same in other places (M, 4)."""
         moved = copy(self)
         moved.shape = shape
@@ -321,7 +315,7 @@ def _values(at: Vector) -> Vector:
 class _InPlace(View):
     """Generators at some inputs, in the unit of the problem, with derivatives by the shape."""
 
-    def __init__(self, limits: PlaceLimits, batch: Generators | _Still, inputs: FloatArray) -> None:
+    def __init__(self, limits: PlaceLimits, batch: Generators | _Rigid, inputs: FloatArray) -> None:
         x, y, log, self.angle = limits.place(batch)
         a, b = batch.joints(inputs)
         unit, self.kind = limits.unit * np.exp(log), limits.kind
@@ -340,8 +334,8 @@ class _InPlace(View):
         if self.kind.dyad.pinned:
             self.o4 = placed(Vector(still + 1.0, still))
 
-    def seen(self, columns: Mapping[int, int] | None = None) -> Design:
-        """As limits at single targets see it, by the column of each; by default a target at every input."""
+    def design(self, columns: Mapping[int, int] | None = None) -> Design:
+        """For limits at single targets, by the column of each; by default a target at every input."""
         tracks = list[list[Any]]()
         for at in (self.a, self.b):
             track: list[Any] = [(at.x, at.y)] if columns is None else [None] * (max(columns) + 1)
@@ -349,7 +343,7 @@ class _InPlace(View):
                 track[target] = at.x.column(column), at.y.column(column)
             tracks.append(track)
         o2, o4 = ((at.x, at.y) for at in (self.o2, self.o4 if self.kind.dyad.pinned else self.o2))
-        return seen(self.kind.dyad, o2, o4, self.angle, *tracks)
+        return design_of(self.kind.dyad, o2, o4, self.angle, *tracks)
 
 
 def _free(wanted: Requirements, moving: set[str], *, pinned: bool) -> FloatArray:
