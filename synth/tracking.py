@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,11 +12,11 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.mechanisms import is_of
 from grashof.synth.designs.candidate import Candidate, same_error
-from grashof.synth.designs.judging import judged_again
+from grashof.synth.designs.judging import Steps, ToJudge, in_step
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.search.attempt import attempt
+from grashof.synth.search.attempt import attempted
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.finder import DesignFinder
 
@@ -82,15 +82,17 @@ def track(
     exact = problem.requirements.is_exact(problem.task) and problem.zones is None
     errors = [0.0 if exact else one.error(one.problem) for one in designs]
     least = max(min(errors, default=0.0), same_error(problem))
-    moved: dict[int, Candidate] = {}
-    reached = np.inf
-    for number in np.argsort(errors, kind="stable").tolist():  # the least error bounds that of others
-        design = designs[number]
-        share = errors[number] / least
-        most = np.inf if share < _TRADED else max(share * max(reached, same_error(problem)), errors[number])
-        moved[number] = _moved(ready[design.linkage.mechanism.word], design, number, most)
-        if moved[number].verdict.ok:
-            reached = min(reached, moved[number].error(problem))
+    free = {number: np.inf for number, error in enumerate(errors) if error < _TRADED * least}
+    moved = _all_moved(ready, designs, free)
+    # The least error now bounds that of the designs that traded error.
+    reached = min((one.error(problem) for one in moved.values() if one.verdict.ok), default=np.inf)
+    reached = max(reached, same_error(problem))
+    traded = {
+        number: max(error / least * reached, error)
+        for number, error in enumerate(errors)
+        if number not in free
+    }
+    moved |= _all_moved(ready, designs, traded)
     return tuple(replace(moved[number], problem=problem) for number in range(len(designs)))
 
 
@@ -108,25 +110,50 @@ def _kinds_of(designs: Sequence[Candidate], problem: Problem) -> list[str]:
     return list(kinds)
 
 
-def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Candidate:
+def _all_moved(
+    ready: Mapping[str, ScaledProblem], designs: Sequence[Candidate], allowed: Mapping[int, float]
+) -> dict[int, Candidate]:
+    """Designs with errors allowed, by number, each moved; those of a kind are judged together."""
+    moved = dict[int, Candidate]()
+    for kind, scaled in ready.items():
+        alike = [number for number in allowed if designs[number].linkage.mechanism.word == kind]
+        routines = [_moved(scaled, designs[number], number, allowed[number]) for number in alike]
+        moved |= zip(alike, in_step(scaled, routines), strict=True)
+    return moved
+
+
+def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Steps[Candidate]:
     """A design after one solve from its place; one that traded error may have as much again.
 
     Of a function or a stroke: the design of the new task that is nearest to it.
     """
+    found = yield from _solved(scaled, design, number, most_error)
+    if found is None:
+        known = design.verdict.cylinder
+        found = yield ToJudge(design.linkage, design.start, design.iterations, cylinder=known)
+    return replace(found, best_at=design.best_at, family=design.family)
+
+
+def _solved(
+    scaled: ScaledProblem, design: Candidate, number: int, most_error: float
+) -> Steps[Candidate | None]:
+    """The result of the solver, as of `_moved`; None where it is not a linkage."""
     finder = finder_for(scaled)
     if isinstance(finder, DesignFinder):
-        tried = [attempt(scaled, each, number).candidate for each in finder.follow(design)]
-        nearest = next((one for one in tried if one is not None), judged_again(scaled, design))
-        return replace(nearest, best_at=design.best_at, family=design.family)
-    same = design.verdict.theta2.shape == (len(scaled.problem.task),)
-    verdict = design.verdict if same else judged_again(scaled, design).verdict
+        for each in finder.follow(design):
+            done = yield from attempted(scaled, each, number)
+            if done.candidate is not None:
+                return done.candidate
+        return None
+    verdict = design.verdict
+    if verdict.theta2.shape != (len(scaled.problem.task),):
+        verdict = (yield ToJudge(design.linkage, design.start, design.iterations)).verdict
     start = Start.of_linkage(scaled, design.linkage, verdict)
     start = start.under(settled=scaled.exact, stay=scaled.exact)
     if np.isfinite(most_error):
-        traded = attempt(scaled, start.under(stay=True, most_error=most_error), number, cognates=False)
-        if traded.verified:
-            return replace(traded.verified[0], best_at=design.best_at, family=design.family)
-    found = attempt(scaled, start, number, cognates=False).candidate
-    if found is None:
-        return judged_again(scaled, design)
-    return replace(found, best_at=design.best_at, family=design.family)
+        near = start.under(stay=True, most_error=most_error)
+        done = yield from attempted(scaled, near, number, cognates=False)
+        if done.verified:
+            return done.verified[0]
+    done = yield from attempted(scaled, start, number, cognates=False)
+    return done.candidate

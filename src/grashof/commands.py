@@ -213,6 +213,7 @@ def live(
             own.bind((HOST, options.port))
         except OSError as error:
             raise SolverError(f"--port {options.port}: {error.strerror}; 0 takes a free one") from None
+        own.listen()  # browsers that are sooner than the server wait
         served = Live(begin, own.getsockname()[1])
         say(f"{served.address}\nThe page of {begin['name']}, for this machine alone. Ctrl-C ends it.")
         if options.browser:

@@ -77,7 +77,9 @@ def attempts(
 
     Their cognates too, where they are of use. A linkage is verified as it is.
     """
-    routines = [_attempt(scaled, start, number, cognates) for number, start in enumerate(starts, first)]
+    routines = [
+        attempted(scaled, start, number, cognates=cognates) for number, start in enumerate(starts, first)
+    ]
     return in_step(scaled, routines)
 
 
@@ -86,7 +88,10 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
     return attempts(scaled, [start], number, cognates=cognates)[0]
 
 
-def _attempt(scaled: ScaledProblem, start: Proposal, number: int, cognates: bool) -> Steps[Attempt]:
+def attempted(
+    scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bool = True
+) -> Steps[Attempt]:
+    """The attempt from start `number`, as a routine that asks for designs."""
     if overdue():
         return Attempt(LEFT_ALONE, None)
     if isinstance(start, Linkage):
