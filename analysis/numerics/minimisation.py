@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
-import scipy
 
+from grashof.analysis.numerics.isotonic import isotonic_regression
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 
 # The objective: its value, first and second derivative, and a positive substitute for the second.
@@ -169,9 +169,7 @@ def _pooled(angle: FloatArray, model: Model) -> FloatArray:
 
 def _in_order(wish: FloatArray, weight: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """The nearest ascending angles, by weight, within one turn and their bounds."""
-    ordered = wish.copy()
-    for row in np.flatnonzero((np.diff(wish, axis=1) < 0).any(axis=1)):
-        ordered[row] = scipy.optimize.isotonic_regression(wish[row], weights=weight[row]).x
+    ordered = isotonic_regression(wish, weight)
     for row in np.flatnonzero(ordered[:, -1] - ordered[:, 0] > TURN):
         ordered[row] = _within_a_turn(ordered[row], weight[row])
     return np.clip(ordered, low, high)

@@ -23,7 +23,7 @@ from grashof.synth.quantities.along_motion import torque_misses
 from grashof.synth.quantities.formulas import View
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.target_constraints import AtTarget
-from grashof.synth.quantities.wanted_torque import WantedCurve, rms
+from grashof.synth.quantities.wanted_torque import rms
 
 OWN_INSET = 1e-8  # by which the user's constraints are tightened, so that the polished design keeps them
 LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
@@ -335,7 +335,7 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
     order = np.argsort(start.visit)
     turned = np.array(start.carrying)[order] + start.body_angle
     missed = float(scaled.missed(start.track[2][order], turned)) ** 2 * len(order)
-    if (curve := WantedCurve.of(scaled.problem)) is not None and curve.weight:
+    if (curve := scaled.wanted_torque) is not None and curve.weight:
         missed += len(order) * float(curve.weight * rms(misses_at_start(scaled, start))) ** 2
     return missed
 

@@ -72,7 +72,7 @@ def instants(start: Start, *, over_task: bool) -> FloatArray:
 
 def overlooked_instants(form: Form, start: Start, solved: Start) -> bool:
     """Whether a solved second loop transmits worse between the instants of its start."""
-    for over_task in _motions(form) if form.two_loops else ():
+    for over_task in _motions(form):
         fine = _sines(solved, np.linspace(0, 1, FINE), over_task=over_task)
         held = _sines(solved, instants(start, over_task=over_task), over_task=over_task)
         if fine.min() < max(held.min() - AGREES, held.min() / 2):

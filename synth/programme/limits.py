@@ -37,7 +37,7 @@ from grashof.synth.quantities.along_motion import (
     unit_along,
     value_of,
 )
-from grashof.synth.quantities.driver_motion import drive_of, driver_at
+from grashof.synth.quantities.driver_motion import driver_at
 from grashof.synth.quantities.formulas import Part, parts_of, range_of, smooth_ratio
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.wanted_torque import DEVIATIONS
@@ -175,7 +175,7 @@ def diagonal(build: Builder, form: Form, x: Unknowns, places: Positions) -> ca.S
 def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) -> ca.SX:
     """An upper bound of a magnitude at the driver angles of an even grid, and those added to it."""
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start
-    omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
+    omega2 = build.parameter(lambda scaled, _: scaled.drive[1])
     middle = (
         build.parameter(lambda scaled, _: middle_of(scaled.wanted, key)) if key in BOTH_SIDES else ca.SX(0)
     )

@@ -220,6 +220,8 @@ def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
 
 
 def _overlooked(scaled: ScaledProblem, start: Start, solved: Solve) -> bool:
+    if start.second is None:
+        return False
     return overlooked_instants(Form.of(scaled, start), start, begun_from(start, solved))
 
 

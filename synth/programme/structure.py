@@ -14,7 +14,6 @@ from grashof.problems.values.requirements.quantities import Needs, Scope
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
-from grashof.synth.quantities.driver_motion import drive_of
 from grashof.synth.quantities.formulas import Formulas, of_six_bars
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.loading import Loading
@@ -116,15 +115,15 @@ class Form:
             goals=() if plain else tuple(start.terms.goals),
             own_goal=not plain and start.terms.objective is None,
             grid=_grid_size(start, closed),
-            loading=Loading.of(scaled.problem),
-            motor=drive_of(scaled.problem)[0],
-            torque=WantedCurve.of(scaled.problem) if start.second is None else None,
+            loading=scaled.loading,
+            motor=scaled.drive[0],
+            torque=scaled.wanted_torque if start.second is None else None,
             closed=closed,
             keep_out=points_held(scaled),
             regions=_regions(scaled, start),
             stay=start.terms.stay,
             elastic=bool(start.terms.relaxed),
-            nearest=_nearest(scaled, start),
+            nearest=held_nearest(scaled, start),
             most_error=bool(np.isfinite(start.terms.most_error)),
             zoned=start.terms.zoned,
         )
@@ -162,7 +161,7 @@ def _grid_size(start: Start, closed: bool) -> int:
     return (2 if long else 1) * STEPS + 1
 
 
-def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
+def held_nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     """Targets at which a limit, or the objective, depends on the driver angle that the judge finds."""
     wanted, count = scaled.wanted, len(start.visit)
     if scaled.exact or start.terms.relaxed or start.terms.loose or start.second is not None:

@@ -16,10 +16,10 @@ from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.synth.loop.instant import Instant, Moment
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.drive_torque import drive_torque, joint_forces
-from grashof.synth.quantities.driver_motion import drive_of, driver_at
+from grashof.synth.quantities.driver_motion import driver_at
 from grashof.synth.quantities.loading import NOTHING, Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.wanted_torque import DEVIATIONS, WantedCurve
+from grashof.synth.quantities.wanted_torque import DEVIATIONS
 
 SCREENED = 25  # instants at which many linkages are compared
 INSPECTED = 30 * SCREENED  # instants at which one linkage is inspected
@@ -120,9 +120,9 @@ def magnitudes(
     """
     ends = _ends(scaled, theta2, direction)
     with np.errstate(all="ignore"):
-        driver = driver_at(*drive_of(scaled.problem), np.linspace(0, 1, count), *ends)
+        driver = driver_at(*scaled.drive, np.linspace(0, 1, count), *ends)
         middle = middle_of(scaled.problem.requirements, key)
-        values = ALONG[key](_instants(scaled, points, assembly, driver), Loading.of(scaled.problem), middle)
+        values = ALONG[key](_instants(scaled, points, assembly, driver), scaled.loading, middle)
         found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
     greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)
     return greatest
@@ -136,7 +136,7 @@ def torque_misses(
     assembly: FloatArray,
 ) -> FloatArray:
     """Drive torques minus the wanted ones (n, K) of linkages given as for `magnitudes`, reference torques."""
-    curve = WantedCurve.of(scaled.problem)
+    curve = scaled.wanted_torque
     if curve is None:
         raise TypeError("a problem without a wanted torque has no deviation from it")
     first, last, sense = _ends(scaled, theta2, direction)

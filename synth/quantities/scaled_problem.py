@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -18,18 +19,22 @@ from grashof.problems import (
     TransmissionOver,
 )
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.linkages.mechanisms import has_one_loop
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.synth.loop.dyad import direction_of
+from grashof.synth.quantities.driver_motion import drive_of
 from grashof.synth.quantities.formulas import of_six_bars
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.kinds import kind_of
+from grashof.synth.quantities.loading import Loading
 from grashof.synth.quantities.target_constraints import AtTarget, target_constraints
+from grashof.synth.quantities.wanted_torque import WantedCurve
 from grashof.synth.theory.burmester import Displacements
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class ScaledProblem:
     """A problem in the frame of the search: N targets, lengths in sizes, angles in rad."""
 
@@ -98,7 +103,7 @@ class ScaledProblem:
         """The objective besides the error; None for the user's own."""
         return self.problem.objective if self.own_objective is None else None
 
-    @property
+    @cached_property
     def at_targets(self) -> tuple[AtTarget, ...]:
         """Limits at single targets as constraints."""
         return target_constraints(self.problem)
@@ -107,6 +112,21 @@ class ScaledProblem:
     def every_constraint(self) -> tuple[Constraint, ...]:
         """The user's own constraints, and limits at single targets."""
         return (*self.constraints, *self.at_targets)
+
+    @cached_property
+    def loading(self) -> Loading | None:
+        """Masses and loads; None without dynamics."""
+        return Loading.of(self.problem)
+
+    @cached_property
+    def drive(self) -> tuple[MotorSpec | None, float]:
+        """The motor and the driver's mean velocity, as of `drive_of`."""
+        return drive_of(self.problem)
+
+    @cached_property
+    def wanted_torque(self) -> WantedCurve | None:
+        """The wanted torque; None without one."""
+        return WantedCurve.of(self.problem)
 
     @property
     def bounded(self) -> bool:

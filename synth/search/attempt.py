@@ -17,7 +17,7 @@ from grashof.synth.designs.polishing import polished_solve, polished_start
 from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.nonlinear_programme import SOLVED, Solve, begun_from, solve_by_exchange
 from grashof.synth.programme.start import UNSMOOTH, DrivenLinkage, Proposal, Start
-from grashof.synth.programme.structure import Form
+from grashof.synth.programme.structure import held_nearest
 from grashof.synth.quantities.formulas import FORMULAS
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
@@ -145,7 +145,7 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Steps[Attempt]:
     would be worse for them.
     """
     strict, by_error = start, not start.terms.bounded
-    may_loosen = any(Form.of(scaled, start).nearest)
+    may_loosen = any(held_nearest(scaled, start))
     start = strict.under(loose=may_loosen and by_error)
     solve = solve_by_exchange(scaled, start)
     if may_loosen and not by_error and solve.status not in SOLVED and not stop_requested():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import lru_cache
 
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import located, whole_number
@@ -24,6 +25,7 @@ def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Roun
         number += 1 + found.skip
 
 
+@lru_cache(maxsize=8)
 def finder_for(scaled: ScaledProblem) -> StartFinder | DesignFinder:
     """The first kind of search that suits a problem; the last suits all. None is loaded before it does."""
     task = scaled.problem.task

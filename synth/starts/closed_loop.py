@@ -67,7 +67,7 @@ class SearchTargets:
     def of(cls, scaled: ScaledProblem) -> SearchTargets:
         """The targets of a problem; a last point that repeats the first counts as its second half."""
         last = -1 if scaled.problem.task.returns else None
-        curve = WantedCurve.of(scaled.problem)
+        curve = scaled.wanted_torque
         weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights[:last].copy()
         if last:
             weights[0] += scaled.weights[-1]

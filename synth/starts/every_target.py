@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-import scipy
 
+from grashof.analysis.numerics.isotonic import isotonic_regression
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.quantities.driver_motion import meeting_order
 from grashof.synth.starts.closed_loop import PROPORTIONS, Batch, Loop, SearchTargets, body_turns, by_theta3_of
@@ -39,6 +39,9 @@ class Linear:
     by_over: FloatArray  # (n, L, C + 2), derivatives by what all share and the driver angles at the ends
     ends: IntArray  # (n, 2), of the motion
 
+    def __getitem__(self, rows: IntArray) -> Linear:
+        return Linear(*(getattr(self, name)[rows] for name in self.__slots__))
+
     def where(self, better: BoolArray, fresh: Linear) -> Linear:
         """The fresh one of the linkages that are better."""
         pairs = ((getattr(fresh, name), getattr(self, name)) for name in self.__slots__)
@@ -62,14 +65,15 @@ def fitted_to_all(
 
 
 def descended(
-    target: SearchTargets, linearised: Callable[[Batch], Linear], now: Batch, shape: int, steps: int
+    target: SearchTargets, linearised: Callable[[Batch], Linear], begun: Batch, shape: int, steps: int
 ) -> Batch:
     """Linkages after these steps; `shape` columns of a batch precede its driver angles at every target."""
-    model = linearised(now)
+    now = begun
+    found, rows, model = now.unknowns.copy(), np.arange(len(now)), linearised(now)
     damping, idle = np.full(len(now), 1e-3), np.zeros(len(now), dtype=np.int64)
     raise_if_overdue()
     for _ in range(steps):
-        if stop_requested():
+        if stop_requested() or not rows.size:
             break
         tried = _stepped(target, now, model, damping, shape)
         fresh = linearised(tried)
@@ -78,9 +82,11 @@ def descended(
         now = replace(now, unknowns=np.where(better[:, None], tried.unknowns, now.unknowns))
         model = model.where(better, fresh)
         damping = np.clip(np.where(better, damping / 5, damping * 8), 1e-12, 10 * HEAVY)
-        if ((idle > 3) | (damping > HEAVY)).all():
-            break
-    return now
+        found[rows] = now.unknowns
+        left = np.flatnonzero((idle <= 3) & (damping <= HEAVY))
+        if len(left) < len(rows):
+            rows, now, model, damping, idle = (each[left] for each in (rows, now, model, damping, idle))
+    return replace(begun, unknowns=found)
 
 
 def costs_of_all(target: SearchTargets, batch: Batch, weight: float) -> FloatArray:
@@ -215,8 +221,7 @@ def _moved(
         moved: FloatArray = angles + np.clip(step, -LONGEST, LONGEST)
         return moved
     desired = sense * (angles + np.clip(step, -LONGEST, LONGEST))
-    ordered: FloatArray = np.stack([_in_order(*row) for row in zip(desired, weights, strict=True)])
-    return sense * ordered
+    return sense * _in_order(desired, weights)
 
 
 def _flat(common: FloatArray) -> FloatArray:
@@ -242,12 +247,13 @@ def _summed(parts: FloatArray, together: BoolArray) -> FloatArray:
     return every
 
 
-def _in_order(angle: FloatArray, weight: FloatArray) -> FloatArray:
-    """The nearest angles, by weight, that do not go back, within one turn."""
-    if (np.diff(angle) < 0).any():
-        angle = scipy.optimize.isotonic_regression(angle, weights=weight).x
-    over = angle[-1] - angle[0] - TURN * (1 - LEAST_GAP)
-    return np.clip(angle, angle[0] + over / 2, angle[-1] - over / 2) if over > 0 else angle
+def _in_order(angles: FloatArray, weights: FloatArray) -> FloatArray:
+    """The nearest angles (n, N), by weight, that do not go back, within one turn."""
+    ordered = isotonic_regression(angles, weights)
+    first, last = ordered[:, :1], ordered[:, -1:]
+    over = np.maximum(last - first - TURN * (1 - LEAST_GAP), 0.0)
+    within: FloatArray = np.clip(ordered, first + over / 2, last - over / 2)
+    return within
 
 
 def _by_gaps(found: Batch, count: int) -> Batch:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -11,8 +10,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 from grashof.synth.loop.dimensions import dimensions_of, sized_loop
 from grashof.synth.loop.dyad import ClosingDyad
 
-STEPS = 4
-MORE, DONE = 8, 1e-10  # steps at most beyond these where, as on short arcs, much is left
+STEPS, DONE = 12, 1e-10  # on short arcs many are needed
 MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 
@@ -53,23 +51,21 @@ def polish_path(
         theta2[:1] if targets.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
-    worst = np.inf
-    for step in range(STEPS + MORE):
+    before = np.inf
+    for step in range(STEPS + 1):
+        (moved, coupler), residual, jacobian = _linearised(unknowns, gaps, assembly, targets)
+        worst = float(np.abs(residual).max(initial=0.0))
+        # One step more than enough leads to rounding.
+        if before < DONE or step == STEPS or not np.isfinite(worst + jacobian.sum()):
+            break
         before = worst
-        _, residual, jacobian = _linearised(unknowns, gaps, assembly, targets)
-        if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
-            break
-        worst = np.abs(residual).max(initial=0.0)
-        if step >= STEPS and before < DONE:  # and one step more, which leads to rounding
-            break
         if targets.timed or len(theta2) <= MANY:
             jacobian = jacobian if targets.timed else _spread(jacobian, targets)
             unknowns = unknowns - np.linalg.lstsq(jacobian, residual, rcond=1e-12)[0]
         else:
             unknowns = unknowns - _eliminated(jacobian, residual, targets)
-    (moved, coupler), residual, _ = _linearised(unknowns, gaps, assembly, targets)
     theta2 = unknowns[10] + gaps if targets.timed else unknowns[10:]
-    return Polished(moved, theta2, coupler, float(unknowns[9]), float(np.abs(residual).max(initial=0.0)))
+    return Polished(moved, theta2, coupler, float(unknowns[9]), worst)
 
 
 def _linearised(
@@ -91,12 +87,13 @@ def _linearised(
         p = a + arm * e3
         # The loop, projected on e4, gives the turn of the coupler.
         below = loop.rod * (e3 * e4.conj()).imag
-        turns: list[Any] = [*(moved / below for moved in loop.moved), 0.0, 0.0, 0.0]
-        moves = [1, 1j, 0, 0, e2, 0, 0, e3, 1j * e3, 0]
-        turns.append((1j * r2 * e2 * e4.conj()).real / below)
-        moves.append(1j * r2 * e2)
-        by_turn = np.stack([np.broadcast_to(column, a.shape) for column in turns], axis=1)
-        by_move = np.stack([np.broadcast_to(column, a.shape) for column in moves], axis=1)
+        by_turn, by_move = np.zeros((len(a), 11)), np.zeros((len(a), 11), dtype=np.complex128)
+        for column, moved in enumerate(loop.moved):
+            by_turn[:, column] = moved / below
+        turning = 1j * r2 * e2
+        by_turn[:, 10] = (turning * e4.conj()).real / below
+        for column, move in {0: 1, 1: 1j, 4: e2, 7: e3, 8: 1j * e3, 10: turning}.items():
+            by_move[:, column] = move
         by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
         by_turn[:, 9] = 1.0
     off = (p - targets.points)[targets.has_point]

@@ -39,8 +39,10 @@ from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
 
 NEAR = 1e-5  # so close to a limit either judgement will do: the search places drivers to about 1e-6
-POOL = 14  # linkages of each kind
-STARTS = 6
+POOL = 28  # linkages of each kind
+STARTS = 14
+DRAWS = 8  # of timed tasks, which bring few linkages at a time
+APART = 0.01  # sizes, between linkages that differ
 FREE = Requirements(link_length=(1e-3, 1e3), link_ratio_max=1e3, coupler_arms=(0.0, 1e3))
 STEERED = {"transmission", "size", *FORMULAS, *ALONG}
 
@@ -79,6 +81,15 @@ def verdicts_of(linkages: Sequence[FourBar], problem: Problem) -> list[Verdict]:
     return Judge(problem.task, problem.requirements, problem=problem).verdicts([Subject(x) for x in linkages])
 
 
+def apart(points: ComplexArray) -> list[int]:
+    """Of linkages (n, 5) those that differ from all before."""
+    picked = list[int]()
+    for k in range(len(points)):
+        if (np.abs(points[picked] - points[k]).max(axis=-1) > APART).all():
+            picked.append(k)
+    return picked
+
+
 class Pool:
     """Linkages of a kind of task, as screened, as they are, and with their values."""
 
@@ -92,8 +103,12 @@ class Pool:
         )
         scaled = ScaledProblem.of(self.problem)
         self.scale = scaled.frame.scale
-        found = finder_for(scaled).near(np.random.default_rng(3))
-        found = Screened.joined(found) if isinstance(found, list) else found
+        rng, draws = np.random.default_rng(3), DRAWS if scaled.timed else 1
+        near = [finder_for(scaled).near(rng) for _ in range(draws)]
+        found = Screened.joined(
+            [one for each in near for one in (each if isinstance(each, list) else [each])]
+        )
+        found = found[apart(found.points)]
         found = found[np.linspace(0, len(found) - 1, min(len(found), 5 * POOL)).astype(int)]
         body = None if scaled.motion is not None else found.body_angle
         batch = scaled.linkages(found.points, found.assembly, body)
@@ -137,7 +152,9 @@ def halving(of: Pool, name: str) -> tuple[Any, FloatArray]:
     shown = limit.quantity.unit.shown
     if limit.kind in (Kind.INSIDE, Kind.ON_BODY):
         low = of.ends(name, "x")[:, 0]
-        least = float(np.median(low))
+        # Near the last that misses it: in a wide gap no solve may lead from one side to the other.
+        below, above = np.sort(low)[len(low) // 2 - 1 :][:2]
+        least = float(0.9 * below + 0.1 * above)
         return Box(x=(least, np.inf)), least - low
     if limit.kind is Kind.NAMED:
         part = {"link_ratios": "r3/r2", "distances": "a-o4"}[name]

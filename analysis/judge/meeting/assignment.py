@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +12,10 @@ from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntAr
 
 _KEPT = 4
 _STRIDE, _MOST_CUTS = 5, 72  # pieces from cut to cut; more of them where there are very many pieces
+_DECIDE = 64  # targets, evenly spread, that decide where a turn is cut
+_THINNED = (32, 8, 1)  # every so many of these bound the sums of cuts, before all count
 _SAGITTA = 5e-4  # of the length of the curve: no piece bulges farther from its chord
 _NEAR = 0.1  # rad: guesses closer than this lead to the same place
-_FEW = 64  # targets: those of more are added diagonal by diagonal, which takes longer to begin
 _ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same one
 
 
@@ -21,7 +23,7 @@ _ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same 
 class Guess:
     """Driver angles near the best, not going back, with their bounds, (N,) in rad, and assemblies.
 
-    `distance` is the root of the weighted squares from straight pieces, wrong by at most `slack`, and too
+    `distance` is the root of the weighted squares from straight pieces, wrong by at most `slack_of`, and too
     small where targets are `crowded`: in the wrong order on a piece.
     """
 
@@ -30,17 +32,23 @@ class Guess:
     ceiling: FloatArray
     assembly: IntArray
     distance: float
-    slack: float
     crowded: bool
 
 
 def ordered_guesses(
-    track: Track, targets: ComplexArray, weights: FloatArray, *, middles: bool = False
+    track: Track,
+    targets: ComplexArray,
+    weights: FloatArray,
+    slack: float,
+    least: float = np.inf,
+    *,
+    middles: bool = False,
 ) -> list[Guess]:
     """Assignments of targets (N,) to pieces that do not go back within one turn, the best first.
 
     By dynamic programming; with `middles` distances are from the middle of a piece, otherwise from its chord,
-    which is closer but allows targets on one piece in any order.
+    which is closer but allows targets on one piece in any order. None is missing whose distance exceeds the
+    best one's, or `least`, by less than twice the `slack`.
     """
     by_side = _distances(track, targets, middles)
     side = np.argmin(by_side[0], axis=1)
@@ -49,13 +57,24 @@ def ordered_guesses(
     if not track.cyclic:
         chosen, costs = assigned(squared[:, :, None])
         return [_guess(track, chosen[:, 0], share, side, float(costs[0]))] if np.isfinite(costs[0]) else []
-    chosen, costs, cuts = assigned_around(squared)
+    slack += middles * float(_chords(track).max()) / 2 * len(targets) ** 0.5
+    chosen, costs, cuts = assigned_around(squared, lambda cost: (cost**0.5 + 2 * slack) ** 2, least**2)
     guesses: list[Guess] = []
     for number, cut in enumerate(cuts):
         guess = _guess(track, chosen[:, number] + cut, share, side, float(costs[number]))
         if not any(_alike(guess, other) for other in guesses):
             guesses.append(guess)
     return guesses
+
+
+def slack_of(track: Track, count: int) -> float:
+    """Most by which distances of a number of targets from pieces differ from those from the curve."""
+    return _SAGITTA * float(_chords(track).sum()) * count**0.5
+
+
+def _chords(track: Track) -> FloatArray:
+    lengths: FloatArray = np.nan_to_num(np.abs(track.end - track.start)).max(axis=0)
+    return lengths
 
 
 def _alike(one: Guess, other: Guess) -> bool:
@@ -99,8 +118,6 @@ def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
 
     `around`, shape (N, 2 M), holds the costs of N targets on the pieces of two turns.
     """
-    if len(around) > _FEW:
-        return _least_costs_of_many(around, cuts, length)
     places = cuts + np.arange(length)[:, None]
     total = around[0][places]
     for squared in around[1:]:
@@ -110,30 +127,10 @@ def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
     return least
 
 
-def _least_costs_of_many(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
-    """The same, to the last bit, for many targets: the least up to each piece, all cuts at once.
-
-    Up to target k and piece p it is least(k, p) = min(least(k - 1, p) + cost(k, p), least(k, p - 1)). On
-    a diagonal k + p = d nothing depends on anything else there, so that one step makes all of it.
-    """
-    count, width = around.shape
-    # On a diagonal a piece more is a target less, `back` numbers farther back; none before the first.
-    back = width - 1
-    flat = np.concatenate([np.zeros((length - 1) * back), around.ravel()])
-    place = cuts + back * np.arange(length - 1, -1, -1)[:, None]
-    least: FloatArray = np.zeros((length + 1, len(cuts)))
-    least[0] = np.inf  # before the first piece
-    for diagonal in range(count + length - 1):
-        low, high = max(0, diagonal - count + 1), min(diagonal, length - 1) + 1
-        here = flat[diagonal * width :][place[low:high]]
-        here += least[low + 1 : high + 1]
-        least[low + 1 : high + 1] = np.minimum(here, least[low:high], out=here)
-    ends: FloatArray = least[-1]
-    return ends
-
-
 def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
     """Pieces (N, C), never going back, and least sums (C,) of costs (N, L, C) of N targets on L pieces."""
+    if not windows.size:
+        return np.empty((len(windows), 0), dtype=np.int64), np.empty(0)
     totals = np.empty(windows.shape)
     totals[0] = windows[0]
     for index, squared in enumerate(windows[1:], start=1):
@@ -147,31 +144,57 @@ def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
     return chosen, totals[-1].min(axis=0)
 
 
-def assigned_around(squared: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
+def assigned_around(
+    squared: FloatArray, most: Callable[[float], float], least: float = np.inf
+) -> tuple[IntArray, FloatArray, IntArray]:
     """The best assignments of N targets to the M pieces of a turn, which is cut open somewhere.
 
     Pieces (N, C), counted from the cut on up to M, which is the first one again; their sums (C,), the least
-    first; and the cuts (C,). A turn is cut first at every few pieces, all at once, then at every piece about
-    the best.
+    first; and the cuts (C,). Up to sums of `most` of the least one, or of a `least` known from elsewhere,
+    others may be missing. A turn is cut first at every few pieces, all at once, then at every piece after the
+    best; of many targets some decide where.
     """
-    count = squared.shape[1]
+    count, some = squared.shape[1], np.unique(np.linspace(0, len(squared) - 1, _DECIDE).round().astype(int))
+    stride = max(_STRIDE, count // _MOST_CUTS)
+    around = np.concatenate([squared, squared, squared[:, :stride]], axis=1)
     # One piece more than the turn has: the last target may repeat the first.
-    around, stride = np.concatenate([squared, squared], axis=1), max(_STRIDE, count // _MOST_CUTS)
-    cuts = np.arange(0, count, stride)
-    cuts = _best_cuts(cuts, _least_costs(around, cuts, count + 1))
-    cuts = np.unique((cuts[:, None] + np.arange(1 - stride, stride)) % count)
-    cuts = _best_cuts(cuts, _least_costs(around, cuts, count + 1))
+    sums = _Sums(around[some], count + 1, float(np.delete(squared, some, axis=0).min(axis=1).sum()), most)
+    cuts, least = sums.best(np.arange(0, count, stride), stride - 1, least)
+    cuts, _ = sums.best(np.unique((cuts[:, None] + np.arange(stride)) % count), 0, least)
     chosen, costs = assigned(around[:, cuts + np.arange(count + 1)[:, None]])
-    return chosen, costs, cuts
-
-
-def _best_cuts(cuts: IntArray, costs: FloatArray) -> IntArray:
-    """The cuts with the least costs, one for each cost, the best first."""
     order = np.argsort(costs, kind="stable")
-    ranked = costs[order]
-    new = np.diff(ranked, prepend=-np.inf) > _ALIKE * (ranked + ranked[0])
-    best: IntArray = cuts[order][new & np.isfinite(ranked)][:_KEPT]
-    return best
+    return chosen[:, order], costs[order], cuts[order]
+
+
+@dataclass(frozen=True, slots=True)
+class _Sums:
+    """Least sums of costs from cuts on."""
+
+    around: FloatArray  # (N, L): costs of the targets that decide, on the pieces of two turns and more
+    turn: int  # pieces from a cut on
+    rest: float  # least costs of the other targets
+    most: Callable[[float], float]  # sum that is wanted, of the least one
+
+    def best(self, cuts: IntArray, wider: int, least: float) -> tuple[IntArray, float]:
+        """The cuts with the least sums, one for each sum, the best first; and the least sum of a turn.
+
+        Sums from some pieces more than a turn are lower bounds for that many cuts that follow, too; so are
+        those of fewer targets. Cuts are left out as soon as their bounds exceed what is wanted.
+        """
+        nearest, costs = self.around.min(axis=1), np.empty(0)
+        for step in _THINNED:
+            if not cuts.size:
+                break
+            left = self.rest + float(np.delete(nearest, slice(None, None, step)).sum())
+            costs = _least_costs(self.around[::step], cuts, self.turn + wider) + left
+            best = cuts[np.argmin(costs)][None]
+            least = min(least, float(_least_costs(self.around, best, self.turn)[0]) + self.rest)
+            near = np.isfinite(costs) & (costs <= self.most(least))
+            cuts, costs = cuts[near], costs[near]
+        order = np.argsort(costs, kind="stable")
+        ranked = costs[order]
+        new = np.diff(ranked, prepend=-np.inf) > _ALIKE * (ranked + ranked[:1])
+        return cuts[order][new][:_KEPT], least
 
 
 def _guess(track: Track, chosen: IntArray, share: FloatArray, side: IntArray, cost: float) -> Guess:
@@ -183,7 +206,5 @@ def _guess(track: Track, chosen: IntArray, share: FloatArray, side: IntArray, co
     ordered = np.minimum(np.maximum.accumulate(theta2), theta2[0] + TURN)
     assembly = track.signs[side[target, piece]]
     floor, ceiling = (bound[piece] + TURN * turns for bound in (track.floor, track.ceiling))
-    length = float(np.nan_to_num(np.abs(track.end - track.start)).max(axis=0).sum())
-    slack = _SAGITTA * length * len(chosen) ** 0.5
     crowded = bool((ordered != theta2).any())
-    return Guess(ordered, floor, ceiling, assembly, cost**0.5, slack, crowded)
+    return Guess(ordered, floor, ceiling, assembly, cost**0.5, crowded)

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import PIECES, Track, between, coupler_curve, range_around, tracks
-from grashof.analysis.judge.meeting.assignment import Guess, nearest_guess, ordered_guesses
+from grashof.analysis.judge.meeting.assignment import Guess, nearest_guess, ordered_guesses, slack_of
 from grashof.analysis.judge.meeting.task_motion import as_good, misses, squares, valleys
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.mechanism.position import solve_position
@@ -58,14 +58,17 @@ def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: 
     from the curve.
     """
     passages = _passages(linkage, task, same_branch, theta2_start)
-    guesses = [(guess, passage) for passage in passages for guess in passage.guesses(middles=False)]
+    slack = max((slack_of(each.track, len(task)) for each in passages), default=0.0)
+    guesses, least = list[tuple[Guess, _Passage]](), np.inf
+    for passage in passages:
+        guesses += [(guess, passage) for guess in passage.guesses(slack, least)]
+        least = min((guess.distance for guess, _ in guesses), default=np.inf)
     if not guesses:
         return None
     guesses.sort(key=lambda item: item[0].distance)
-    first = guesses[0][0]
-    near = [item for item in guesses[:_BASINS] if item[0].distance <= first.distance + 2 * first.slack]
+    near = [item for item in guesses[:_BASINS] if item[0].distance <= least + 2 * slack]
     for crowded in {id(passage): passage for guess, passage in near if guess.crowded}.values():
-        near += [(guess, crowded) for guess in crowded.guesses(middles=True)]
+        near += [(guess, crowded) for guess in crowded.guesses(slack, middles=True)]
     theta2, floor, ceiling, assembly = (
         np.array([getattr(guess, name) for guess, _ in near])
         for name in ("theta2", "floor", "ceiling", "assembly")
@@ -137,14 +140,15 @@ class _Passage:
         """Numbers of the targets."""
         return np.arange(len(self.points))[:: self.direction]
 
-    def guesses(self, *, middles: bool) -> list[Guess]:
+    def guesses(self, slack: float, least: float = np.inf, *, middles: bool = False) -> list[Guess]:
+        """Assignments as of `ordered_guesses`; those of a driver with a given first angle have no `least`."""
         if self.first is None or self.start is None:
-            return ordered_guesses(self.track, self.points, self.weights, middles=middles)
+            return ordered_guesses(self.track, self.points, self.weights, slack, least, middles=middles)
         at = 0 if self.direction > 0 else -1
         gaps = np.abs(self.start - self.points[at])
         sign, distance = int(self.track.signs[np.argmin(gaps)]), float(self.weights[at] ** 0.5 * gaps.min())
         rest, weights = np.delete(self.points, at), np.delete(self.weights, at)
-        found = ordered_guesses(self.track, rest, weights, middles=middles)
+        found = ordered_guesses(self.track, rest, weights, slack, middles=middles)
         return [_with(guess, self.first, sign, distance, at) for guess in found]
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:

@@ -234,7 +234,7 @@ def _some(places: FloatArray) -> FloatArray:
 def _guesses(places: FloatArray, miss: FloatArray, *, turns: bool) -> FloatArray:
     """Driver angles (K, N) among given ones (M,) that do not go back, of the least sums of misses (N, M)."""
     if turns:
-        chosen, costs, cuts = assigned_around(miss)
+        chosen, costs, cuts = assigned_around(miss, lambda least: _FOLLOWED * least)
         chosen = chosen + cuts
     else:
         chosen, costs = assigned(miss[:, :, None])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -85,18 +86,21 @@ def _targets_of(task: Task) -> dict[str, Any]:
 
 def _published(problem: Problem) -> dict[str, Any] | None:
     """Path of the best published design, for a path of the catalogue."""
-    task, known = problem.task, published(problem.name)
-    if not known or problem.name not in catalogue():
+    if not published(problem.name) or problem.name not in catalogue():
         return None
-    if not np.array_equal(task.positions, load(problem.name).task.positions):
-        return None  # another problem with the same name
-    best = known[0]
+    points, path = _published_path(problem.name)
+    # another problem may have the same name
+    return path if np.array_equal(problem.task.positions, points) else None
+
+
+@lru_cache(maxsize=8)
+def _published_path(name: str) -> tuple[FloatArray, dict[str, Any]]:
+    """Points of a path of the catalogue, and the path of its best published design."""
+    best = published(name)[0]
     low, high = driver_ranges(best.linkage)[0]
     path = Scene(best.linkage).path(np.linspace(low, high, _SAMPLES))
-    return {
-        "label": f"{best.method} {best.year}",
-        "path": [compact(point) for point in path if np.isfinite(point).all()],
-    }
+    shown = [compact(point) for point in path if np.isfinite(point).all()]
+    return load(name).task.positions, {"label": f"{best.method} {best.year}", "path": shown}
 
 
 class Travel(NamedTuple):

@@ -89,7 +89,6 @@ def test_it_ends_on_its_targets(case: str, seed: int) -> None:
 
 @pytest.mark.parametrize("case", CASES)
 def test_errors_fall_quadratically(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(path_polish, "MORE", 0)
     for seed in range(3):
         planted, errors = Planted(seed, case), []
         for steps in range(5):
@@ -105,7 +104,6 @@ def test_errors_fall_quadratically(case: str, monkeypatch: pytest.MonkeyPatch) -
 def test_a_step_is_the_least_one(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The pseudo-inverse of differences of other loops gives the same step."""
     monkeypatch.setattr(path_polish, "STEPS", 1)
-    monkeypatch.setattr(path_polish, "MORE", 0)
     planted = Planted(1, case)
     targets, angles = planted.targets, planted.angles
     gaps, timed = angles - angles[0], targets.timed

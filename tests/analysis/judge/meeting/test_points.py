@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
 from grashof.analysis.judge.how_met import meet
 from grashof.analysis.judge.meeting import assignment
-from grashof.analysis.judge.meeting.assignment import _least_costs, _least_costs_of_many, assigned_around
+from grashof.analysis.judge.meeting.assignment import _least_costs, assigned_around
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
@@ -242,8 +242,7 @@ def test_a_linkage_that_cannot_be_assembled_is_infinitely_far(
     assert np.isfinite(way.theta2).all()
 
 
-@pytest.mark.parametrize("function", [_least_costs, _least_costs_of_many])
-def test_no_assignment_that_does_not_go_back_costs_less(function) -> None:
+def test_no_assignment_that_does_not_go_back_costs_less() -> None:
     squared = np.random.default_rng(0).random((4, 6))
     around, length = np.concatenate([squared, squared], axis=1), 5
     cuts = np.array([0, 2, 5])
@@ -254,13 +253,41 @@ def test_no_assignment_that_does_not_go_back_costs_less(function) -> None:
         )
         for cut in cuts
     ]
-    np.testing.assert_allclose(function(around, cuts, length), least, rtol=1e-14)
+    np.testing.assert_allclose(_least_costs(around, cuts, length), least, rtol=1e-14)
 
 
-def test_many_targets_have_the_same_sums_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
-    squared = np.random.default_rng(1).random((150, 40))
-    squared[squared > 0.9] = np.inf
-    found = assigned_around(squared)
-    monkeypatch.setattr(assignment, "_FEW", 1000)
-    for one, other in zip(found, assigned_around(squared), strict=True):
-        np.testing.assert_array_equal(one, other)
+def test_some_of_many_targets_decide_well_where_a_turn_is_cut() -> None:
+    rng = np.random.default_rng(62)
+    for count in (70, 150, 400):
+        at, places = np.sort(rng.random(count)) * 180 + 33, np.arange(180)
+        squared = ((at[:, None] - places + 90) % 180 - 90) ** 2 + rng.random((count, 180)) * 2000
+        least = _least_costs(np.concatenate([squared, squared], axis=1), places, 181).min()
+        assert assigned_around(squared, lambda cost: cost)[1][0] <= 1.03 * least
+
+
+@pytest.mark.parametrize("count", [1, 2, 9, 33, 64])
+@pytest.mark.parametrize("noise", [0.01, 0.3])
+def test_bounds_leave_out_no_assignment_that_is_wanted(
+    count: int, noise: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Sums up to those wanted are found as without bounds; those known from elsewhere leave out others."""
+    rng = np.random.default_rng([61, count])
+    at, places = np.sort(rng.random(count)) * 40, np.arange(40)
+    squared = ((at[:, None] - places + 20) % 40 - 20) ** 2 + noise * rng.random((count, 40)) * 400
+    squared[rng.random(squared.shape) > 0.95] = np.inf
+
+    def most(least: float) -> float:
+        return 1.5 * least
+
+    pieces, sums, cuts = assigned_around(squared, most)
+    assert (sums[:-1] <= sums[1:]).all()
+    everywhere = np.concatenate([squared, squared], axis=1)
+    for column, cut in enumerate(cuts):
+        assert (np.diff(pieces[:, column]) >= 0).all()
+        on = everywhere[np.arange(count), pieces[:, column] + cut]
+        assert on.sum() == pytest.approx(sums[column])
+    assert not assigned_around(squared, most, 0.5 * sums[0] / 1.5)[1].size
+    monkeypatch.setattr(assignment, "_THINNED", (1,))
+    every = assigned_around(squared, lambda _: np.inf)[1]
+    wanted = sums <= most(sums[0])
+    np.testing.assert_allclose(sums[wanted], every[: wanted.sum()], rtol=1e-9)
