@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
 
 def isotonic_regression(values: FloatArray, weights: FloatArray) -> FloatArray:
@@ -29,10 +29,10 @@ def isotonic_regression(values: FloatArray, weights: FloatArray) -> FloatArray:
     >>> isotonic_regression(np.array([[1.0, 4.0, 2.0, 5.0]]), np.array([[1.0, 1.0, 3.0, 1.0]]))
     array([[1. , 2.5, 2.5, 5. ]])
     """
-    means, mass = values.ravel(), weights.ravel()
-    size, first = np.ones(means.shape, dtype=np.int64), np.zeros(values.shape, dtype=bool)
-    first[:, :1] = True
-    first = first.ravel()
+    means: FloatArray = values.ravel()
+    mass: FloatArray = weights.ravel()
+    size: IntArray = np.ones(means.shape, dtype=np.int64)
+    first: BoolArray = np.broadcast_to(np.arange(values.shape[1]) == 0, values.shape).ravel()
     while (falls := (np.diff(means, prepend=-np.inf) < 0) & ~first).any():
         begin = np.flatnonzero(~falls)
         total = np.add.reduceat(mass, begin)

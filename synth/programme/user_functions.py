@@ -30,7 +30,7 @@ _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_O
 # The place in CasADi's source with which its messages begin.
 _PLACE = re.compile(r'^\S+\.[ch]pp:\d+: (Assertion ".*?" failed: )?')
 WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, ArithmeticError)
-_WARNS, _SILENT = 0, -1  # modes of CasADi for NumPy functions that meet symbols; both do what 3.7.2 did
+_WARNS, _SILENT = 0, -1  # modes of CasADi for NumPy functions that meet symbols; what they do is the same
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,10 +231,10 @@ def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
 @contextmanager
 def numpy_on_symbols() -> Iterator[None]:
     """NumPy functions give symbols of symbols, and do not warn."""
-    # CasADi from 3.8 on warns callers of NumPy functions on symbols that a later version may return arrays.
+    # CasADi warns callers of NumPy functions on symbols that a later version may return arrays.
     # The mode is that of the process: it is restored, and left alone where it is not the default.
     options = ca.GlobalOptions
-    if not hasattr(options, "setNumpyMode") or options.getNumpyMode() != _WARNS:
+    if options.getNumpyMode() != _WARNS:
         yield
         return
     options.setNumpyMode(_SILENT)

@@ -85,7 +85,8 @@ def descended(
         found[rows] = now.unknowns
         left = np.flatnonzero((idle <= 3) & (damping <= HEAVY))
         if len(left) < len(rows):
-            rows, now, model, damping, idle = (each[left] for each in (rows, now, model, damping, idle))
+            rows, now, model = rows[left], now[left], model[left]
+            damping, idle = damping[left], idle[left]
     return replace(begun, unknowns=found)
 
 

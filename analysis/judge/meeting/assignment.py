@@ -69,7 +69,7 @@ def ordered_guesses(
 
 def slack_of(track: Track, count: int) -> float:
     """Most by which distances of a number of targets from pieces differ from those from the curve."""
-    return _SAGITTA * float(_chords(track).sum()) * count**0.5
+    return float(_SAGITTA * _chords(track).sum() * np.sqrt(count))
 
 
 def _chords(track: Track) -> FloatArray:

@@ -221,7 +221,6 @@ def test_numpy_functions_do_not_warn() -> None:
     assert max(float(candidate.linkage.r1) for candidate in synthesize(THREE, enough=4).candidates) > 2
 
 
-@pytest.mark.skipif(not hasattr(ca.GlobalOptions, "setNumpyMode"), reason="CasADi has one mode only")
 @pytest.mark.parametrize("mode", [0, -1])
 def test_the_mode_of_numpy_is_left_as_it_was(mode: int) -> None:
     ca.GlobalOptions.setNumpyMode(mode)
