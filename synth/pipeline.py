@@ -66,7 +66,7 @@ def synthesize(
     effort : float, optional
         Override the problem's own (see `Search`).
     workers : int
-        Processes. The result does not depend on it; a search of a second or two gains nothing.
+        Processes, begun once a search takes longer than a second or so. The result does not depend on it.
     executor : concurrent.futures.Executor, optional
         Where to work instead; not shut down. `workers` is its number of workers, which sets the amount of
         work begun ahead. Threads gain nothing: one of them solves at a time.

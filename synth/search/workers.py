@@ -12,8 +12,8 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
-from multiprocessing import connection, get_context, parent_process, resource_tracker
-from threading import Thread
+from multiprocessing import active_children, connection, get_context, parent_process, resource_tracker
+from threading import Thread, Timer
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -31,6 +31,7 @@ _LOG = logging.getLogger(__name__)
 AHEAD, AHEAD_EXACT, BUNDLE = 4, 16, 4
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
 LOOK = 0.1  # s between two checks whether to stop
+LONG = 0.7  # s after which processes begin, which takes as long again
 CRASHED = "Crashed"  # status of a start that ends the process that solves it
 
 STOP, OVER = 1, 2  # orders to the processes: to accept the current results, and to end
@@ -205,35 +206,55 @@ class CrashError(SolverError):
 
 
 class Processes(OnExecutor):
-    """In own processes, which end with this one; a lost one is replaced."""
+    """In own processes, which begin once a search takes long and end with it; a lost one is replaced."""
 
     def __init__(self, count: int) -> None:
-        self._state = new_state()
+        self._state, self._own = new_state(), set[Any]()
+        self._first: Future[int] | None = None  # the answer of the first process
         super().__init__(processes(count, self._state), count)
-        self._ready = begun(self._executor, count)
+        self._timer = Timer(LONG, self._begin)
+        self._timer.start()
+
+    def _begin(self) -> None:
+        others = set(active_children())
+        self._first = begun(self._executor, self.width)
+        self._own = set(active_children()) - others
+
+    def _ready(self) -> bool:
+        """Whether a process is there to work."""
+        return self._first is not None and self._first.done()
 
     def end(self) -> None:
-        """End the processes and their work."""
+        """End the processes and their work, also those that have not come to look for orders."""
+        self._timer.cancel()
+        self._timer.join()
         self._state.value = OVER
         self.drop()
+        if not self._ready():
+            for each in self._own:
+                each.terminate()
         self._executor.shutdown(cancel_futures=True)
 
     def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
         """Attempts from starts; in this process while the others begin."""
-        made = list[Attempt]()
-        while len(made) < len(starts) and not self._ready.done():
-            made += attempts(scaled, starts[len(made) :][:1], first + len(made))
+        made, some = list[Attempt](), BUNDLE if scaled.exact else 1
+        while len(made) < len(starts) and not self._ready():
+            made += attempts(scaled, starts[len(made) :][:some], first + len(made))
         return made + super().attempts(scaled, starts[len(made) :], first + len(made))
 
     def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
         """The value of a function; made in this process while the others begin, unless one has begun it."""
-        if self._ready.done() or (make, self._packed(scaled), *which) in self._begun:
+        if self._ready() or (make, self._packed(scaled), *which) in self._begun:
             return super().made(make, scaled, *which)
         return make(scaled, *which)
 
+    def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
+        """Begin a function, once there are processes; whether it was not begun before."""
+        return self._first is not None and super().begin(make, scaled, *which)
+
     def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
         """Begin as many as there may soon be processes for, once these run."""
-        if self._ready.done():
+        if self._ready():
             super().begin_attempts(scaled, starts)
 
     def _look(self) -> None:
@@ -246,7 +267,7 @@ class Processes(OnExecutor):
         self.drop()
         self._executor.shutdown(cancel_futures=True)
         self._executor = processes(self.width, self._state)
-        self._ready = begun(self._executor, self.width)
+        self._begin()
 
 
 @contextmanager

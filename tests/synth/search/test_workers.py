@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
+from functools import partial
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -19,6 +20,7 @@ from grashof.problems import MotionTask, Problem, Requirements
 from grashof.synth import Result
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.search import workers
 from grashof.synth.search.plain import plain
 from grashof.synth.search.workers import CrashError, OnExecutor, Processes, Work, screen
 
@@ -42,7 +44,8 @@ def table(result: Result) -> str:
 @pytest.mark.slow
 @pytest.mark.quick("poses fitted", "pairs fitted", "limit positions")
 @pytest.mark.parametrize("kind", SEARCHES)
-def test_workers_change_no_byte(kind: str) -> None:
+def test_workers_change_no_byte(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers, "LONG", 0.0)
     problem, options = SEARCHES[kind]
     alone = table(synthesize(problem, **options))
     assert table(synthesize(problem, **options, workers=2)) == alone
@@ -52,7 +55,9 @@ def test_workers_change_no_byte(kind: str) -> None:
 def processes(monkeypatch: pytest.MonkeyPatch) -> Iterator[Processes]:
     """Two of them, which know the functions of this module."""
     monkeypatch.syspath_prepend(Path(__file__).parents[3])
+    monkeypatch.setattr(workers, "LONG", 0.0)
     made = Processes(2)
+    made._timer.join()
     yield made
     made.end()
 
@@ -91,6 +96,15 @@ def test_the_work_of_a_lost_process_is_repeated(processes: Processes) -> None:
 
     Thread(target=kill).start()
     assert [processes.made(nap, scaled, seconds) for seconds in naps] == list(naps)
+
+
+def test_a_short_search_begins_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers, "LONG", 1e6)
+    before, seen = multiprocessing.active_children(), list[Any]()
+    search = partial(synthesize, load("luggage"), starts=40)
+    found = search(workers=2, progress=lambda _: seen.append(multiprocessing.active_children()))
+    assert seen == [before] * len(seen)
+    assert table(found) == table(search())
 
 
 class Killing(Executor):
