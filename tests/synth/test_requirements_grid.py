@@ -207,26 +207,11 @@ def stated(of: Pool, name: str) -> bool:
 
 # Their searches take longer than half a second.
 HEAVY = {
-    "a",
-    "coupler_arms",
-    "frechet",
-    "hausdorff",
-    "joint_force_peak",
-    "mechanical_advantage_min",
-    "omega4_max",
-    "output_acceleration_max",
-    "output_swing_deg",
-    "point_acceleration_max",
-    "point_speed_max",
-    "r2",
-    "share_within_made",
-    "size",
-    "time_ratio",
-    "torque_peak",
-    "torque_rms",
-    "transmission_min_deg",
-    "worst_move",
-}
+    "a", "coupler_arms", "frechet", "hausdorff", "joint_force_peak", "mechanical_advantage_min",
+    "omega4_max", "output_acceleration_max", "output_swing_deg", "point_acceleration_max",
+    "point_speed_max", "r2", "share_within_made", "size", "time_ratio", "torque_peak", "torque_rms",
+    "transmission_min_deg", "worst_move",
+}  # fmt: skip
 
 
 def is_steered(name: str) -> bool:
