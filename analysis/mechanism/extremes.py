@@ -9,7 +9,6 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 import scipy
-from numpy.polynomial import chebyshev
 
 from grashof.analysis.mechanism.even_motion import angles_at_shares, closer_at_ends, even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
@@ -243,6 +242,7 @@ def _outermost(
 
 def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[float]:
     """Stationary points about a sample, from the widest window in which a polynomial is exact."""
+    chebyshev = np.polynomial.chebyshev  # NumPy loads it when it is asked for
     middle, (least, most) = at[peak], (-np.inf, np.inf) if closed else (at[0], at[-1])
     step = max(at[min(peak + 1, len(at) - 1)] - middle, middle - at[max(peak - 1, 0)])
     for width in (16.0, 4.0, 1.0):
