@@ -129,8 +129,7 @@ def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: fl
     """
     found = yield from _solved(scaled, design, number, most_error)
     if found is None:
-        known = design.verdict.cylinder
-        found = yield ToJudge(design.linkage, design.start, design.iterations, cylinder=known)
+        found = yield _as_it_is(design)
     return replace(found, best_at=design.best_at, family=design.family)
 
 
@@ -147,7 +146,7 @@ def _solved(
         return None
     verdict = design.verdict
     if verdict.theta2.shape != (len(scaled.problem.task),):
-        verdict = (yield ToJudge(design.linkage, design.start, design.iterations)).verdict
+        verdict = (yield _as_it_is(design)).verdict
     start = Start.of_linkage(scaled, design.linkage, verdict)
     start = start.under(settled=scaled.exact, stay=scaled.exact)
     if np.isfinite(most_error):
@@ -157,3 +156,8 @@ def _solved(
             return done.verified[0]
     done = yield from attempted(scaled, start, number, cognates=False)
     return done.candidate
+
+
+def _as_it_is(design: Candidate) -> ToJudge:
+    """A design to be judged again, with the cylinder that drives it."""
+    return ToJudge(design.linkage, design.start, design.iterations, cylinder=design.verdict.cylinder)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -93,6 +94,10 @@ class ScaledProblem:
             own_objective=own_objective,
             kind=kind,
         )
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without cached values, so that a problem is the same in bytes at any time."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def of_problem(self, problem: Problem) -> ScaledProblem:
         """Another problem with the same functions of the user."""

@@ -12,7 +12,7 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
-from multiprocessing import active_children, connection, get_context, parent_process, resource_tracker
+from multiprocessing import connection, get_context, parent_process, resource_tracker
 from threading import Thread, Timer
 from typing import Any, TypeAlias, TypeVar
 
@@ -209,16 +209,18 @@ class Processes(OnExecutor):
     """In own processes, which begin once a search takes long and end with it; a lost one is replaced."""
 
     def __init__(self, count: int) -> None:
-        self._state, self._own = new_state(), set[Any]()
+        self._state = new_state()
         self._first: Future[int] | None = None  # the answer of the first process
+        self._executor: ProcessPoolExecutor
         super().__init__(processes(count, self._state), count)
         self._timer = Timer(LONG, self._begin)
         self._timer.start()
 
     def _begin(self) -> None:
-        others = set(active_children())
-        self._first = begun(self._executor, self.width)
-        self._own = set(active_children()) - others
+        try:
+            self._first = begun(self._executor, self.width)
+        except OSError as error:  # too many processes, or no memory
+            _LOG.warning("the search goes on in one process, since no others can be begun: %s", error)
 
     def _ready(self) -> bool:
         """Whether a process is there to work."""
@@ -231,7 +233,8 @@ class Processes(OnExecutor):
         self._state.value = OVER
         self.drop()
         if not self._ready():
-            for each in self._own:
+            # Of this executor alone: other threads have processes of their own.
+            for each in list((self._executor._processes or {}).values()):
                 each.terminate()
         self._executor.shutdown(cancel_futures=True)
 
@@ -267,7 +270,7 @@ class Processes(OnExecutor):
         self.drop()
         self._executor.shutdown(cancel_futures=True)
         self._executor = processes(self.width, self._state)
-        self._begin()
+        self._first = begun(self._executor, self.width)
 
 
 @contextmanager

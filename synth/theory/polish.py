@@ -56,7 +56,7 @@ def polish_path(
         (moved, coupler), residual, jacobian = _linearised(unknowns, gaps, assembly, targets)
         worst = float(np.abs(residual).max(initial=0.0))
         # One step more than enough leads to rounding.
-        if before < DONE or step == STEPS or not np.isfinite(worst + jacobian.sum()):
+        if before < DONE or step == STEPS or not (np.isfinite(worst) and np.isfinite(jacobian).all()):
             break
         before = worst
         if targets.timed or len(theta2) <= MANY:

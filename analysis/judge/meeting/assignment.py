@@ -116,7 +116,7 @@ def _distances(track: Track, targets: ComplexArray, middles: bool = False) -> tu
 def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
     """Least sums over pieces that never go back, `length` of them from each cut (C,) on; shape (C,).
 
-    `around`, shape (N, 2 M), holds the costs of N targets on the pieces of two turns.
+    `around`, shape (N, L), holds the costs of N targets on the pieces of two turns or more.
     """
     places = cuts + np.arange(length)[:, None]
     total = around[0][places]

@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -105,6 +106,27 @@ def test_a_short_search_begins_no_process(monkeypatch: pytest.MonkeyPatch) -> No
     found = search(workers=2, progress=lambda _: seen.append(multiprocessing.active_children()))
     assert seen == [before] * len(seen)
     assert table(found) == table(search())
+
+
+def test_a_search_goes_on_where_no_process_can_be_begun(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def none(*_: object) -> None:
+        raise OSError("no more processes")
+
+    monkeypatch.setattr(workers, "LONG", 0.0)
+    monkeypatch.setattr(workers, "begun", none)
+    search = partial(synthesize, load("luggage"), starts=40)
+    assert table(search(workers=2)) == table(search())
+    assert "no more processes" in caplog.text
+
+
+def test_a_problem_is_the_same_in_bytes_whatever_was_cached() -> None:
+    scaled = ScaledProblem.of(load("luggage"))
+    before = pickle.dumps(scaled)
+    assert scaled.loading is not None
+    assert scaled.at_targets == ()
+    assert pickle.dumps(scaled) == before
 
 
 class Killing(Executor):
