@@ -11,12 +11,46 @@ from grashof.analysis.curves.coupler_curve import Track
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 _KEPT = 4
-_STRIDE, _MOST_CUTS = 5, 72  # pieces from cut to cut; more of them where there are very many pieces
-_DECIDE = 64  # targets, evenly spread, that decide where a turn is cut
-_THINNED = (32, 8, 1)  # every so many of these bound the sums of cuts, before all count
+_GROUPS, _AT_ONCE = 24, 2  # of last pieces in a turn, and those looked into together
 _SAGITTA = 5e-4  # of the length of the curve: no piece bulges farther from its chord
 _NEAR = 0.1  # rad: guesses closer than this lead to the same place
-_ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same one
+
+
+@dataclass(frozen=True, slots=True)
+class Gaps:
+    """Targets (N,) beside the M pieces of a track, each on the nearer assembly: arrays (N, M).
+
+    Weighted squared distances, places on the pieces, and assemblies as rows of `track.signs`.
+    """
+
+    track: Track
+    targets: ComplexArray
+    weights: FloatArray
+    squared: FloatArray
+    share: FloatArray
+    side: IntArray
+    slack: float  # by which distances may exceed those from the curve, because places are middles of pieces
+
+    @classmethod
+    def of(cls, track: Track, targets: ComplexArray, weights: FloatArray, *, middles: bool = False) -> Gaps:
+        """Gaps to the chords of pieces, or to their middles.
+
+        Chords are closer, but allow targets on one piece in any order.
+        """
+        squared, share = _distances(track, targets, middles)
+        side = np.argmin(squared, axis=1)[:, None]
+        squared, share = (np.take_along_axis(each, side, axis=1)[:, 0] for each in (squared, share))
+        slack = middles * float(_chords(track).max()) / 2
+        return cls(track, targets, weights, weights[:, None] * squared, share, side[:, 0], slack)
+
+    def to_middles(self) -> Gaps:
+        """The same to the middles of pieces."""
+        return Gaps.of(self.track, self.targets, self.weights, middles=True)
+
+    def reversed(self) -> Gaps:
+        """The same of the targets from the last to the first."""
+        arrays = (self.targets, self.weights, self.squared, self.share, self.side)
+        return Gaps(self.track, *(each[::-1] for each in arrays), slack=self.slack)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,33 +69,18 @@ class Guess:
     crowded: bool
 
 
-def ordered_guesses(
-    track: Track,
-    targets: ComplexArray,
-    weights: FloatArray,
-    slack: float,
-    least: float = np.inf,
-    *,
-    middles: bool = False,
-) -> list[Guess]:
-    """Assignments of targets (N,) to pieces that do not go back within one turn, the best first.
+def ordered_guesses(gaps: Gaps, slack: float, least: float = np.inf) -> list[Guess]:
+    """Assignments to pieces that do not go back within one turn, the best first, as of `assigned`.
 
-    By dynamic programming; with `middles` distances are from the middle of a piece, otherwise from its chord,
-    which is closer but allows targets on one piece in any order. None is missing whose distance exceeds the
-    best one's, or `least`, by less than twice the `slack`.
+    Up to a distance that exceeds the least, or a `least` known from elsewhere, by twice the `slack`.
     """
-    by_side = _distances(track, targets, middles)
-    side = np.argmin(by_side[0], axis=1)
-    squared, share = (np.take_along_axis(each, side[:, None], axis=1)[:, 0] for each in by_side)
-    squared = weights[:, None] * squared
-    if not track.cyclic:
-        chosen, costs = assigned(squared[:, :, None])
-        return [_guess(track, chosen[:, 0], share, side, float(costs[0]))] if np.isfinite(costs[0]) else []
-    slack += middles * float(_chords(track).max()) / 2 * len(targets) ** 0.5
-    chosen, costs, cuts = assigned_around(squared, lambda cost: (cost**0.5 + 2 * slack) ** 2, least**2)
+
+    def most(cost: float) -> float:
+        return float((cost**0.5 + 2 * (slack + gaps.slack)) ** 2)
+
     guesses: list[Guess] = []
-    for number, cut in enumerate(cuts):
-        guess = _guess(track, chosen[:, number] + cut, share, side, float(costs[number]))
+    for chosen, cost in zip(*assigned(gaps.squared, most, least**2, cyclic=gaps.track.cyclic), strict=True):
+        guess = _guess(gaps, chosen, float(cost))
         if not any(_alike(guess, other) for other in guesses):
             guesses.append(guess)
     return guesses
@@ -86,7 +105,7 @@ def nearest_guess(
     track: Track, targets: ComplexArray, valleys: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
     """Driver angles in the nearest valleys of each target, bounds and assemblies, each (valleys, N)."""
-    squared, share = (each.swapaxes(0, 1) for each in _distances(track, targets))
+    squared, share = (each.swapaxes(0, 1) for each in _distances(track, targets, middles=False))
     if track.cyclic:
         before, after = np.roll(squared, 1, axis=2), np.roll(squared, -1, axis=2)
     else:
@@ -102,7 +121,7 @@ def nearest_guess(
     return theta2, track.floor[piece], track.ceiling[piece], track.signs[sign]
 
 
-def _distances(track: Track, targets: ComplexArray, middles: bool = False) -> tuple[FloatArray, FloatArray]:
+def _distances(track: Track, targets: ComplexArray, middles: bool) -> tuple[FloatArray, FloatArray]:
     """Squared distance from each piece on each assembly, and the place on it; each shape (N, S, M)."""
     chord = track.end - track.start
     offset = targets[:, None, None] - track.start
@@ -113,98 +132,120 @@ def _distances(track: Track, targets: ComplexArray, middles: bool = False) -> tu
     return np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf), share
 
 
-def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
-    """Least sums over pieces that never go back, `length` of them from each cut (C,) on; shape (C,).
+def assigned(
+    costs: FloatArray, most: Callable[[float], float], least: float = np.inf, *, cyclic: bool
+) -> tuple[IntArray, FloatArray]:
+    """Pieces (C, N) of targets, never going back, and sums (C,) of their costs (N, M), the least first.
 
-    `around`, shape (N, L), holds the costs of N targets on the pieces of two turns or more.
+    Each is the best of those whose last piece is near its own; up to sums of `most` of the least one, or of a
+    `least` known from elsewhere. In a `cyclic` motion pieces are counted on, and no assignment is longer
+    than a turn: the last target may repeat the first.
     """
-    places = cuts + np.arange(length)[:, None]
-    total = around[0][places]
-    for squared in around[1:]:
+    turn = costs.shape[1]
+    chains = _Chains.of(np.concatenate([costs, costs], axis=1) if cyclic else costs)
+    sums = chains.sums[-1, -turn:]
+    beside = (chains.sums[-1, -turn - 1], sums[0]) if cyclic else (np.inf, np.inf)
+    last = _valleys(sums, *beside)
+    pieces, found = chains.up_to(last + cyclic * turn), sums[last]
+    short = pieces[:, -1] - pieces[:, 0] <= turn
+    least = min(least, float(found[short].min(initial=np.inf)))
+    wanted = np.flatnonzero(found <= most(least))
+    if short[wanted].all():
+        pieces, found = pieces[wanted], found[wanted]
+    else:
+        pieces, found = _within_a_turn(costs, sums, most, least)
+    order = np.argsort(found, kind="stable")[:_KEPT]
+    return pieces[order] - pieces[order, :1] // turn * turn, found[order]
+
+
+def _valleys(sums: FloatArray, before: float, after: float) -> IntArray:
+    """Indices of finite sums (M,) that no neighbour is below, one of a plateau; `before` and `after` all."""
+    left, right = np.append(before, sums[:-1]), np.append(sums[1:], after)
+    found = np.flatnonzero((sums <= left) & (sums < right))
+    return found if found.size or np.isinf(sums).all() else np.argmin(sums)[None]
+
+
+def _within_a_turn(
+    costs: FloatArray, bounds: FloatArray, most: Callable[[float], float], least: float
+) -> tuple[IntArray, FloatArray]:
+    """As `assigned`, where longer assignments cost less: `bounds` (M,) by the last piece.
+
+    Sums on more pieces than a turn has are lower bounds for the turns among them.
+    """
+    turn, around = len(bounds), np.concatenate([costs, costs], axis=1)
+    stride = max(turn // _GROUPS, 1)
+    begin, bounds = np.arange(0, turn, stride), np.minimum.reduceat(bounds, np.arange(0, turn, stride))
+    begin, bounds = begin[bounds <= most(least)], bounds[bounds <= most(least)]
+    bounds = np.maximum(bounds, _least_costs(around, begin, turn + stride))
+    sums, order = np.full(turn, np.inf), np.argsort(bounds, kind="stable")
+    for at in range(0, len(order), _AT_ONCE):
+        groups = order[at : at + _AT_ONCE]
+        groups = groups[bounds[groups] <= most(least)]
+        if not groups.size or np.isinf(bounds[groups[0]]):
+            break
+        first = (begin[groups, None] + np.arange(stride)).ravel()
+        first = first[first < turn]
+        sums[first] = _least_costs(around, first, turn + 1)
+        least = min(least, float(sums[first].min()))
+    first = _valleys(sums, sums[-1], sums[0])
+    first = first[sums[first] <= most(least)]
+    first = first[np.argsort(sums[first], kind="stable")][:_KEPT]
+    chains = _Chains.of(around[:, first[:, None] + np.arange(turn + 1)])
+    return chains.up_to(np.argmin(chains.sums[-1], axis=-1)) + first[:, None], sums[first]
+
+
+def _least_costs(around: FloatArray, first: IntArray, length: int) -> FloatArray:
+    """Least sums over pieces that never go back, `length` of them from each first one (C,) on; shape (C,).
+
+    `around`, shape (N, L), holds the costs of N targets on the pieces of two turns.
+    """
+    places = first + np.arange(length)[:, None]
+    total = around[0].take(places, mode="wrap")
+    for costs in around[1:]:
         np.minimum.accumulate(total, axis=0, out=total)
-        total += squared[places]
+        total += costs.take(places, mode="wrap")
     least: FloatArray = total.min(axis=0)
     return least
 
 
-def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Pieces (N, C), never going back, and least sums (C,) of costs (N, L, C) of N targets on L pieces."""
-    if not windows.size:
-        return np.empty((len(windows), 0), dtype=np.int64), np.empty(0)
-    totals = np.empty(windows.shape)
-    totals[0] = windows[0]
-    for index, squared in enumerate(windows[1:], start=1):
-        totals[index] = np.minimum.accumulate(totals[index - 1], axis=0) + squared
-    place = np.arange(windows.shape[1])[:, None]
-    chosen = np.empty((len(windows), windows.shape[2]), dtype=np.int64)
-    last = np.full(windows.shape[2], windows.shape[1])
-    for index in range(len(windows) - 1, -1, -1):
-        last = np.argmin(np.where(place <= last, totals[index], np.inf), axis=0)
-        chosen[index] = last
-    return chosen, totals[-1].min(axis=0)
-
-
-def assigned_around(
-    squared: FloatArray, most: Callable[[float], float], least: float = np.inf
-) -> tuple[IntArray, FloatArray, IntArray]:
-    """The best assignments of N targets to the M pieces of a turn, which is cut open somewhere.
-
-    Pieces (N, C), counted from the cut on up to M, which is the first one again; their sums (C,), the least
-    first; and the cuts (C,). Up to sums of `most` of the least one, or of a `least` known from elsewhere,
-    others may be missing. A turn is cut first at every few pieces, all at once, then at every piece after the
-    best; of many targets some decide where.
-    """
-    count, some = squared.shape[1], np.unique(np.linspace(0, len(squared) - 1, _DECIDE).round().astype(int))
-    stride = max(_STRIDE, count // _MOST_CUTS)
-    around = np.concatenate([squared, squared, squared[:, :stride]], axis=1)
-    # One piece more than the turn has: the last target may repeat the first.
-    sums = _Sums(around[some], count + 1, float(np.delete(squared, some, axis=0).min(axis=1).sum()), most)
-    cuts, least = sums.best(np.arange(0, count, stride), stride - 1, least)
-    cuts, _ = sums.best(np.unique((cuts[:, None] + np.arange(stride)) % count), 0, least)
-    chosen, costs = assigned(around[:, cuts + np.arange(count + 1)[:, None]])
-    order = np.argsort(costs, kind="stable")
-    return chosen[:, order], costs[order], cuts[order]
-
-
 @dataclass(frozen=True, slots=True)
-class _Sums:
-    """Least sums of costs from cuts on."""
+class _Chains:
+    """Least sums over pieces that never go back, up to each target (N,) on each piece (L,)."""
 
-    around: FloatArray  # (N, L): costs of the targets that decide, on the pieces of two turns and more
-    turn: int  # pieces from a cut on
-    rest: float  # least costs of the other targets
-    most: Callable[[float], float]  # sum that is wanted, of the least one
+    sums: FloatArray  # (N, ..., L)
+    before: IntArray  # (N, ..., L): the piece, up to each, with the least sum of a target
 
-    def best(self, cuts: IntArray, wider: int, least: float) -> tuple[IntArray, float]:
-        """The cuts with the least sums, one for each sum, the best first; and the least sum of a turn.
+    @classmethod
+    def of(cls, costs: FloatArray) -> _Chains:
+        """The sums of costs (N, ..., L)."""
+        sums, least = np.empty_like(costs), np.empty_like(costs)
+        sums[0] = costs[0]
+        np.minimum.accumulate(sums[0], axis=-1, out=least[0])
+        for here in range(1, len(costs)):
+            np.add(least[here - 1], costs[here], out=sums[here])
+            np.minimum.accumulate(sums[here], axis=-1, out=least[here])
+        at_least = np.where(sums == least, np.arange(costs.shape[-1]), 0)
+        return cls(sums, np.maximum.accumulate(at_least, axis=-1))
 
-        Sums from some pieces more than a turn are lower bounds for that many cuts that follow, too; so are
-        those of fewer targets. Cuts are left out as soon as their bounds exceed what is wanted.
-        """
-        nearest, costs = self.around.min(axis=1), np.empty(0)
-        for step in _THINNED:
-            if not cuts.size:
-                break
-            left = self.rest + float(np.delete(nearest, slice(None, None, step)).sum())
-            costs = _least_costs(self.around[::step], cuts, self.turn + wider) + left
-            best = cuts[np.argmin(costs)][None]
-            least = min(least, float(_least_costs(self.around, best, self.turn)[0]) + self.rest)
-            near = np.isfinite(costs) & (costs <= self.most(least))
-            cuts, costs = cuts[near], costs[near]
-        order = np.argsort(costs, kind="stable")
-        ranked = costs[order]
-        new = np.diff(ranked, prepend=-np.inf) > _ALIKE * (ranked + ranked[:1])
-        return cuts[order][new][:_KEPT], least
+    def up_to(self, last: IntArray) -> IntArray:
+        """Pieces (C, N) of the targets, the last on a given one (C,), each in its own row of several."""
+        pieces = np.empty((last.size, len(self.sums)), dtype=np.int64)
+        pieces[:, -1] = last
+        row = () if self.sums.ndim == 2 else (np.arange(last.size),)
+        for here in range(pieces.shape[1] - 2, -1, -1):
+            pieces[:, here] = self.before[(here, *row, pieces[:, here + 1])]
+        return pieces
 
 
-def _guess(track: Track, chosen: IntArray, share: FloatArray, side: IntArray, cost: float) -> Guess:
+def _guess(gaps: Gaps, chosen: IntArray, cost: float) -> Guess:
+    track = gaps.track
     turns, piece = np.divmod(chosen, len(track.low))
     target = np.arange(len(chosen))
-    part = share[target, piece]
+    part = gaps.share[target, piece]
     theta2 = track.low[piece] + part * (track.high - track.low)[piece] + TURN * turns
     # Within a piece the targets may be in the wrong order.
     ordered = np.minimum(np.maximum.accumulate(theta2), theta2[0] + TURN)
-    assembly = track.signs[side[target, piece]]
+    assembly = track.signs[gaps.side[target, piece]]
     floor, ceiling = (bound[piece] + TURN * turns for bound in (track.floor, track.ceiling))
     crowded = bool((ordered != theta2).any())
     return Guess(ordered, floor, ceiling, assembly, cost**0.5, crowded)

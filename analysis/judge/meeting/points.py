@@ -9,13 +9,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import PIECES, Track, between, coupler_curve, range_around, tracks
-from grashof.analysis.judge.meeting.assignment import Guess, nearest_guess, ordered_guesses, slack_of
+from grashof.analysis.judge.meeting.assignment import Gaps, Guess, nearest_guess, ordered_guesses, slack_of
 from grashof.analysis.judge.meeting.task_motion import as_good, misses, squares, valleys
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model, lowest, lowest_in_order
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 _VALLEYS = 3
 _BASINS = 4
@@ -58,7 +58,7 @@ def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: 
     from the curve.
     """
     passages = _passages(linkage, task, same_branch, theta2_start)
-    slack = max((slack_of(each.track, len(task)) for each in passages), default=0.0)
+    slack = max((slack_of(each.gaps.track, len(task)) for each in passages), default=0.0)
     guesses, least = list[tuple[Guess, _Passage]](), np.inf
     for passage in passages:
         guesses += [(guess, passage) for guess in passage.guesses(slack, least)]
@@ -68,14 +68,16 @@ def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: 
     guesses.sort(key=lambda item: item[0].distance)
     near = [item for item in guesses[:_BASINS] if item[0].distance <= least + 2 * slack]
     for crowded in {id(passage): passage for guess, passage in near if guess.crowded}.values():
-        near += [(guess, crowded) for guess in crowded.guesses(slack, middles=True)]
+        apart = replace(crowded, gaps=crowded.gaps.to_middles())
+        near += [(guess, apart) for guess in apart.guesses(slack)]
     theta2, floor, ceiling, assembly = (
         np.array([getattr(guess, name) for guess, _ in near])
         for name in ("theta2", "floor", "ceiling", "assembly")
     )
-    low, high = np.array([passage.bounds() for _, passage in near]).swapaxes(0, 1)
-    points = np.array([passage.points for _, passage in near])
-    model = squares(linkage, task, assembly, np.array([passage.order for _, passage in near]))
+    low, high = np.array([passage.bounds(len(task)) for _, passage in near]).swapaxes(0, 1)
+    order = np.array([passage.order(len(task)) for _, passage in near])
+    points = (task.positions @ np.array([1, 1j]))[order]
+    model = squares(linkage, task, assembly, order)
 
     def gaps(angle: FloatArray) -> FloatArray:
         p = solve_position(linkage, angle, assembly[..., None]).p @ np.array([1, 1j])
@@ -122,43 +124,40 @@ def _beside(
 
 @dataclass(frozen=True, slots=True)
 class _Passage:
-    """One sense of the driver on one of its motions: points and weights (N,) as growing angles meet them.
+    """One sense of the driver on one of its motions, with the gaps of the points as growing angles meet them.
 
-    `direction` is -1 when that reverses the task's order; `first` the driver angle (rad) given at the task's
-    first point, and `start` P there on each assembly.
+    `direction` is -1 when that reverses the task's order. Of a driver with a given angle at the task's first
+    point, the gaps are those of the other points; `first` is that angle (rad), the nearer assembly and the
+    weighted distance there.
     """
 
-    track: Track
-    points: ComplexArray
-    weights: FloatArray
+    gaps: Gaps
     direction: int
-    first: float | None = None
-    start: ComplexArray | None = None
+    first: tuple[float, int, float] | None = None
+
+    def order(self, count: int) -> IntArray:
+        """Numbers of the targets."""
+        return np.arange(count)[:: self.direction]
 
     @property
-    def order(self) -> IntArray:
-        """Numbers of the targets."""
-        return np.arange(len(self.points))[:: self.direction]
+    def at(self) -> int:
+        """Where the first target of the task is."""
+        return 0 if self.direction > 0 else -1
 
-    def guesses(self, slack: float, least: float = np.inf, *, middles: bool = False) -> list[Guess]:
+    def guesses(self, slack: float, least: float = np.inf) -> list[Guess]:
         """Assignments as of `ordered_guesses`; those of a driver with a given first angle have no `least`."""
-        if self.first is None or self.start is None:
-            return ordered_guesses(self.track, self.points, self.weights, slack, least, middles=middles)
-        at = 0 if self.direction > 0 else -1
-        gaps = np.abs(self.start - self.points[at])
-        sign, distance = int(self.track.signs[np.argmin(gaps)]), float(self.weights[at] ** 0.5 * gaps.min())
-        rest, weights = np.delete(self.points, at), np.delete(self.weights, at)
-        found = ordered_guesses(self.track, rest, weights, slack, middles=middles)
-        return [_with(guess, self.first, sign, distance, at) for guess in found]
+        if self.first is None:
+            return ordered_guesses(self.gaps, slack, least)
+        return [_with(guess, *self.first, self.at) for guess in ordered_guesses(self.gaps, slack)]
 
-    def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """Lowest and highest driver angle at each point."""
-        low, high = np.full(len(self.points), -np.inf), np.full(len(self.points), np.inf)
+    def bounds(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest driver angle at each of a number of points."""
+        low, high = np.full(count, -np.inf), np.full(count, np.inf)
         if self.first is not None:
-            low[:] = self.first if self.direction > 0 else self.first - TURN
+            theta2 = self.first[0]
+            low[:] = theta2 if self.direction > 0 else theta2 - TURN
             high[:] = low + TURN
-            at = 0 if self.direction > 0 else -1
-            low[at] = high[at] = self.first
+            low[self.at] = high[self.at] = theta2
         return low, high
 
 
@@ -173,21 +172,22 @@ def _with(guess: Guess, theta2: float, assembly: int, distance: float, at: int) 
 
 
 def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> list[_Passage]:
-    points = task.positions @ np.array([1, 1j])
-    ordered = [(points[::sense], task.weights[::sense], sense) for sense in (1, -1)]
+    points, weights = task.positions @ np.array([1, 1j]), task.weights
     if theta2_start is None:
-        every = tracks(linkage, PIECES, same_branch)
-        return [_Passage(track, *one) for track in every for one in ordered]
+        every = [Gaps.of(track, points, weights) for track in tracks(linkage, PIECES, same_branch)]
+        return [passage for gaps in every for passage in (_Passage(gaps, 1), _Passage(gaps.reversed(), -1))]
     ends = range_around(linkage, theta2_start)
     passages = []
-    for one in ordered:
-        far = float(np.clip(theta2_start + one[-1] * TURN, *ends))
+    for sense in (1, -1):
+        far = float(np.clip(theta2_start + sense * TURN, *ends))
         if far == theta2_start or np.isnan(far):
             continue
         low, high = sorted((theta2_start, far))
         track = between(linkage, low, high, ends, PIECES, same_branch)
-        start = coupler_curve(linkage, theta2_start, track.signs)[0]
-        passages.append(_Passage(track, *one, theta2_start, start))
+        away = np.abs(coupler_curve(linkage, theta2_start, track.signs)[0] - points[0])
+        first = theta2_start, int(track.signs[np.argmin(away)]), float(weights[0] ** 0.5 * away.min())
+        gaps = Gaps.of(track, points[1:], weights[1:])
+        passages.append(_Passage(gaps if sense > 0 else gaps.reversed(), sense, first))
     return passages
 
 

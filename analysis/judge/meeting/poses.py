@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.judge.meeting.assignment import assigned, assigned_around
+from grashof.analysis.judge.meeting.assignment import assigned
 from grashof.analysis.judge.meeting.task_motion import (
     Targets,
     TaskMotion,
@@ -26,6 +26,7 @@ from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 _EXACT = 1e-13  # errors below this share of the size are rounding
 _SAMPLES = 361
 _VALLEYS = 6
+_MANY, _DEEPEST = 64, 2  # of more targets only the deepest valleys are followed to their ends
 _AT_ONCE = 96  # targets of linkages scanned together, whose arrays fit into a cache
 _BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
 _PLACES = 120  # driver angles of a turn, or of a range, among which poses are assigned in order
@@ -110,8 +111,12 @@ def _valleys(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray, FloatA
     for look in (_BESIDE, *[9] * 11):
         near = angle[:, None] + width * np.linspace(-1, 1, look)[:, None, None]
         tried = _into_ranges(ranges[:, None, None, None], near)
-        nearest = np.argmin(misses(every, task, tried, signs[:, None]), axis=1)
-        angle = np.take_along_axis(tried, nearest[:, None], axis=1)[:, 0]
+        miss = misses(every, task, tried, signs[:, None])
+        nearest = np.argmin(miss, axis=1)[:, None]
+        angle, miss = (np.take_along_axis(each, nearest, axis=1)[:, 0] for each in (tried, miss))
+        if look == _BESIDE and len(task) > _MANY:
+            deepest = np.argsort(miss, axis=1, kind="stable")[:, :_DEEPEST]
+            angle, signs = (np.take_along_axis(each, deepest, axis=1) for each in (angle, signs))
         width /= 4
     angle, miss = _descend(linkage, task, ranges, angle, signs)
     return angle, signs, miss
@@ -233,12 +238,6 @@ def _some(places: FloatArray) -> FloatArray:
 
 def _guesses(places: FloatArray, miss: FloatArray, *, turns: bool) -> FloatArray:
     """Driver angles (K, N) among given ones (M,) that do not go back, of the least sums of misses (N, M)."""
-    if turns:
-        chosen, costs, cuts = assigned_around(miss, lambda least: _FOLLOWED * least)
-        chosen = chosen + cuts
-    else:
-        chosen, costs = assigned(miss[:, :, None])
+    chosen, _ = assigned(miss, lambda least: _FOLLOWED * least, cyclic=turns)
     turn, place = np.divmod(chosen, len(places))
-    near = np.isfinite(costs) & (costs <= _FOLLOWED * costs.min(initial=np.inf))
-    guesses: FloatArray = (places[place] + TURN * turn).T[near]
-    return guesses
+    return np.asarray(places[place] + TURN * turn)

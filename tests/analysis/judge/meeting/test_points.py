@@ -1,7 +1,6 @@
-"""Where a linkage comes nearest to points: planted paths, least sums found anew, assignments to pieces."""
+"""Where a linkage comes nearest to points: planted paths, and least sums found anew."""
 
 from collections.abc import Callable
-from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,6 @@ from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
 from grashof.analysis.judge.how_met import meet
-from grashof.analysis.judge.meeting import assignment
-from grashof.analysis.judge.meeting.assignment import _least_costs, assigned_around
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
@@ -240,54 +237,3 @@ def test_a_linkage_that_cannot_be_assembled_is_infinitely_far(
     )
     assert np.isinf(targets.position_error).all()
     assert np.isfinite(way.theta2).all()
-
-
-def test_no_assignment_that_does_not_go_back_costs_less() -> None:
-    squared = np.random.default_rng(0).random((4, 6))
-    around, length = np.concatenate([squared, squared], axis=1), 5
-    cuts = np.array([0, 2, 5])
-    least = [
-        min(
-            sum(around[target, cut + piece] for target, piece in enumerate(pieces))
-            for pieces in combinations_with_replacement(range(length), len(squared))
-        )
-        for cut in cuts
-    ]
-    np.testing.assert_allclose(_least_costs(around, cuts, length), least, rtol=1e-14)
-
-
-def test_some_of_many_targets_decide_well_where_a_turn_is_cut() -> None:
-    rng = np.random.default_rng(62)
-    for count in (70, 150, 400):
-        at, places = np.sort(rng.random(count)) * 180 + 33, np.arange(180)
-        squared = ((at[:, None] - places + 90) % 180 - 90) ** 2 + rng.random((count, 180)) * 2000
-        least = _least_costs(np.concatenate([squared, squared], axis=1), places, 181).min()
-        assert assigned_around(squared, lambda cost: cost)[1][0] <= 1.03 * least
-
-
-@pytest.mark.parametrize("count", [1, 2, 9, 33, 64])
-@pytest.mark.parametrize("noise", [0.01, 0.3])
-def test_bounds_leave_out_no_assignment_that_is_wanted(
-    count: int, noise: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Sums up to those wanted are found as without bounds; those known from elsewhere leave out others."""
-    rng = np.random.default_rng([61, count])
-    at, places = np.sort(rng.random(count)) * 40, np.arange(40)
-    squared = ((at[:, None] - places + 20) % 40 - 20) ** 2 + noise * rng.random((count, 40)) * 400
-    squared[rng.random(squared.shape) > 0.95] = np.inf
-
-    def most(least: float) -> float:
-        return 1.5 * least
-
-    pieces, sums, cuts = assigned_around(squared, most)
-    assert (sums[:-1] <= sums[1:]).all()
-    everywhere = np.concatenate([squared, squared], axis=1)
-    for column, cut in enumerate(cuts):
-        assert (np.diff(pieces[:, column]) >= 0).all()
-        on = everywhere[np.arange(count), pieces[:, column] + cut]
-        assert on.sum() == pytest.approx(sums[column])
-    assert not assigned_around(squared, most, 0.5 * sums[0] / 1.5)[1].size
-    monkeypatch.setattr(assignment, "_THINNED", (1,))
-    every = assigned_around(squared, lambda _: np.inf)[1]
-    wanted = sums <= most(sums[0])
-    np.testing.assert_allclose(sums[wanted], every[: wanted.sum()], rtol=1e-9)
