@@ -69,22 +69,24 @@ def meet(
     points keep to the own assembly and one range; of equal motions the shortest. Points and timed targets
     begin at `theta2_start_deg`, where it is given.
     """
-    if task.is_timed or task.only_points:
-        found = [_points_or_timed(linkage, task, wanted) for linkage in members]
-    else:
-        found = list(_poses(members, batch, task, wanted))
+    how = _points_or_timed if task.is_timed or task.only_points else _poses
+    found = how(members, batch, task, wanted)
     return [(targets, motion.closed() if task.closed else motion) for targets, motion in found]
 
 
-def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+def _points_or_timed(
+    members: Members, batch: Linkage, task: Task, wanted: Requirements
+) -> Iterator[tuple[Targets, TaskMotion]]:
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
     method = met_in_time if task.is_timed else met_in_order if wanted.order else met_singly
-    anywhere = (start or 0.0) + np.nan_to_num(task.driver_turns), np.full(len(task), int(linkage.assembly)), 1
-    theta2, assembly, sense = method(linkage, task, wanted.same_branch, start) or anywhere
-    if start is None:
-        theta2 = theta2 - TURN * np.round(theta2[0] / TURN)
-    motion = TaskMotion.ordered(theta2, sense) if sense else task_motion(linkage, theta2, False)
-    return Targets.of(linkage, task, theta2, assembly), motion
+    found = method(members, batch, task, wanted.same_branch, start)
+    for linkage, met in zip(members, found, strict=True):
+        anywhere = (start or 0.0) + np.nan_to_num(task.driver_turns), np.full(len(task), linkage.assembly), 1
+        theta2, assembly, sense = met or anywhere
+        if start is None:
+            theta2 = theta2 - TURN * np.round(theta2[0] / TURN)
+        motion = TaskMotion.ordered(theta2, sense) if sense else task_motion(linkage, theta2, False)
+        yield Targets.of(linkage, task, theta2, assembly), motion
 
 
 def _poses(

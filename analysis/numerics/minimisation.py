@@ -14,7 +14,7 @@ from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 Model: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 _STEPS = 60  # enough for more than half a turn at _REACH
 _REACH = 0.1  # rad: the longest first step
-_SAME = 1e-12  # rad
+_SAME, _LITTLE = 1e-12, 1e-7  # rad: shorter steps are the last, or the last if they fail
 _EDGE = 3e-7  # share of a range beside its end where derivatives have no digits
 _FIXED = 1e12  # relative weight of an angle that must not move
 _LEAST_WEIGHT = 1e-12  # of the mean
@@ -25,24 +25,26 @@ def lowest(
 ) -> tuple[FloatArray, FloatArray]:
     """Each angle (...) in rad moved to its local minimum, and the value there.
 
-    Bounds are infinite, or the ends of the driver's range; the model is inf where undefined.
+    Bounds are infinite, or the ends of the driver's range; the model is inf where undefined. No angle depends
+    on the others.
     """
     unknown = _Unknown(model, low, high)
     angle, low, high = unknown.of(np.clip(angle, low, high)), unknown.of(low), unknown.of(high)
     current = unknown.model(angle)
-    reach = np.full(angle.shape, _REACH)
+    reach, going = np.full(angle.shape, _REACH), np.full(angle.shape, True)
     for _ in range(_STEPS):
         step = np.clip(-_quotient(current[1], _curvature(current)), -reach, reach)
         tried = np.clip(angle + step, low, high)
         fresh = unknown.model(tried)
         with np.errstate(invalid="ignore"):  # where the values agree to rounding, the slope decides
             level = (fresh[0] <= current[0] * (1 + 1e-14)) & (np.abs(fresh[1]) < np.abs(current[1]))
-        better = (fresh[0] < current[0]) | level
+        better = going & ((fresh[0] < current[0]) | level)
         moved = np.abs(tried - angle)
         reach = np.where(better, np.maximum(reach, 2 * moved), moved / 4)
         angle = np.where(better, tried, angle)
         current = _chosen(better, fresh, current)
-        if not ((moved > _SAME) & (better | (moved > 1e-7))).any():
+        going &= (moved > _SAME) & (better | (moved > _LITTLE))
+        if not going.any():
             break
     return unknown.found(angle, current[0])
 
@@ -57,14 +59,15 @@ def lowest_in_order(
 
     Each value depends on its own angle only; bounds, in order, and ends of the driver's range in rad. Newton
     steps with the diagonal second derivative (shared by equal angles), projected on the order by weighted
-    isotonic regression (Best & Chakravarti 1990), the exact solution of the quadratic step.
+    isotonic regression (Best & Chakravarti 1990), the exact solution of the quadratic step. No row depends on
+    the others.
     """
     unknown = _Unknown(model, *ends)
     low, high = (np.clip(bound, *ends) for bound in bounds)
     angle, low, high = unknown.of(np.clip(angle, low, high)), unknown.of(low), unknown.of(high)
     current = unknown.model(angle)
     fixed = low == high
-    damping = np.zeros((len(angle), 1))
+    damping, going = np.zeros((len(angle), 1)), np.full((len(angle), 1), True)
     for _ in range(_STEPS):
         weight = _pooled(angle, current) * (1 + damping)
         weight = np.maximum(weight, _LEAST_WEIGHT * weight.mean(axis=1, keepdims=True))
@@ -74,12 +77,13 @@ def lowest_in_order(
         longest = np.abs(tried - angle).max(axis=1, keepdims=True)
         tried = angle + (tried - angle) * (_REACH / np.maximum(longest, _REACH))
         fresh = unknown.model(tried)
-        better = _better_rows(current, fresh, angle, tried)
+        better = going & _better_rows(current, fresh, angle, tried)
         moved = np.abs(tried - angle).max(axis=1, keepdims=True)
         damping = np.where(better, damping / 8 * (damping > 1e-3), 4 * damping + 1)
         angle = np.where(better, tried, angle)
         current = _chosen(np.broadcast_to(better, angle.shape), fresh, current)
-        if not ((moved > _SAME) & (better | (moved > 1e-7))).any():
+        going &= (moved > _SAME) & (better | (moved > _LITTLE))
+        if not going.any():
             break
     angle, value = unknown.found(angle, current[0])
     return np.clip(angle, *bounds), value

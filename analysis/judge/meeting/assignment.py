@@ -49,8 +49,8 @@ class Gaps:
 
     def reversed(self) -> Gaps:
         """The same of the targets from the last to the first."""
-        arrays = (self.targets, self.weights, self.squared, self.share, self.side)
-        return Gaps(self.track, *(each[::-1] for each in arrays), slack=self.slack)
+        squared, share, side = self.squared[::-1], self.share[::-1], self.side[::-1]
+        return Gaps(self.track, self.targets[::-1], self.weights[::-1], squared, share, side, self.slack)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +162,7 @@ def _valleys(sums: FloatArray, before: float, after: float) -> IntArray:
     """Indices of finite sums (M,) that no neighbour is below, one of a plateau; `before` and `after` all."""
     left, right = np.append(before, sums[:-1]), np.append(sums[1:], after)
     found = np.flatnonzero((sums <= left) & (sums < right))
-    return found if found.size or np.isinf(sums).all() else np.argmin(sums)[None]
+    return found if found.size or np.isinf(sums).all() else np.argmin(sums, keepdims=True)
 
 
 def _within_a_turn(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -21,14 +22,25 @@ _VALLEYS = 3
 _BASINS = 4
 _BESIDE = 0.15  # rad
 _LOOK = np.linspace(-1, 1, 25)
+_AT_ONCE = 4000  # driver angles that are followed together, whose arrays fit into a cache
 _STARTS = 360  # driver angles at the first timed target, over the range of the driver
 
 # Where targets are met: driver angles and assemblies, each (N,), and the sense of the driver, 0 in no order.
 Met: TypeAlias = tuple[FloatArray, IntArray, int]
 
 
-def met_singly(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """Each point as near as possible, on the motion of the least squares; None without an assembly."""
+def met_singly(
+    members: Sequence[Linkage], _: Linkage, task: Task, same_branch: bool, theta2_start: float | None
+) -> list[Met | None]:
+    """Each point as near as possible, on the motion of the least squares, of each linkage of a batch.
+
+    None without an assembly.
+    """
+    return [_nearest(linkage, task, same_branch, theta2_start) for linkage in members]
+
+
+def _nearest(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+    """The motion of one linkage, as of `met_singly`."""
     target = np.arange(len(task))
     best: Met | None = None
     least = np.inf
@@ -51,48 +63,80 @@ def _tracks_through(linkage: Linkage, same_branch: bool, theta2: float | None) -
     return [track for track in every if (theta2 - track.low[0]) % TURN <= track.high[-1] - track.low[0]]
 
 
-def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """The least weighted squares over driver angles that do not go back, within one turn.
+def met_in_order(
+    members: Sequence[Linkage], batch: Linkage, task: Task, same_branch: bool, theta2_start: float | None
+) -> list[Met | None]:
+    """The least weighted squares over driver angles that do not go back, within one turn, of each of a batch.
 
     None when it cannot be assembled. The least found may be a local one where points must be met together far
     from the curve.
     """
+    near = [_near(linkage, task, same_branch, theta2_start) for linkage in members]
+    found = list[Met | None]()
+    for some in _in_parts([len(each) for each in near], len(task)):
+        found += _followed(batch[some], [near[row] for row in some.tolist()], task)
+    return found
+
+
+def _in_parts(rows: Sequence[int], count: int) -> list[IntArray]:
+    """Numbers of linkages that have some rows of angles each, so divided that arrays fit into a cache."""
+    part = np.cumsum(rows) * count // _AT_ONCE
+    return np.split(np.arange(len(rows)), np.flatnonzero(np.diff(part)) + 1)
+
+
+def _near(
+    linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None
+) -> list[tuple[Guess, _Passage]]:
+    """Assignments of the points that are to be followed."""
     passages = _passages(linkage, task, same_branch, theta2_start)
     slack = max((slack_of(each.gaps.track, len(task)) for each in passages), default=0.0)
     guesses, least = list[tuple[Guess, _Passage]](), np.inf
     for passage in passages:
         guesses += [(guess, passage) for guess in passage.guesses(slack, least)]
         least = min((guess.distance for guess, _ in guesses), default=np.inf)
-    if not guesses:
-        return None
     guesses.sort(key=lambda item: item[0].distance)
     near = [item for item in guesses[:_BASINS] if item[0].distance <= least + 2 * slack]
     for crowded in {id(passage): passage for guess, passage in near if guess.crowded}.values():
         apart = replace(crowded, gaps=crowded.gaps.to_middles())
         near += [(guess, apart) for guess in apart.guesses(slack)]
-    theta2, floor, ceiling, assembly = (
-        np.array([getattr(guess, name) for guess, _ in near])
-        for name in ("theta2", "floor", "ceiling", "assembly")
-    )
-    low, high = np.array([passage.bounds(len(task)) for _, passage in near]).swapaxes(0, 1)
-    order = np.array([passage.order(len(task)) for _, passage in near])
-    points = (task.positions @ np.array([1, 1j]))[order]
-    model = squares(linkage, task, assembly, order)
+    return near
 
-    def gaps(angle: FloatArray) -> FloatArray:
-        p = solve_position(linkage, angle, assembly[..., None]).p @ np.array([1, 1j])
-        return np.asarray(np.nan_to_num(np.abs(p - points[..., None]), nan=np.inf))
 
-    theta2, value = lowest_in_order(model, theta2, (low, high), (floor, ceiling))
-    moved = _beside(gaps, model, theta2, value, np.maximum(floor, low), np.minimum(ceiling, high))
-    if (moved != theta2).any():
-        moved, depth = lowest_in_order(model, moved, (low, high), (floor, ceiling))
-        deeper = (depth.sum(axis=1) < value.sum(axis=1))[:, None]
-        theta2, value = np.where(deeper, moved, theta2), np.where(deeper, depth, value)
-    level = as_good(task, value.sum(axis=1))
-    row = int(np.argmin(np.where(level, np.ptp(theta2, axis=1), np.inf)))
-    sense = near[row][1].direction
-    return theta2[row][::sense], assembly[row][::sense], sense
+def _followed(
+    batch: Linkage, near: Sequence[Sequence[tuple[Guess, _Passage]]], task: Task
+) -> Iterator[Met | None]:
+    """Of each linkage the best that its assignments lead to."""
+    every = [item for each in near for item in each]
+    ends = np.cumsum([0, *map(len, near)])
+    if every:
+        linkages = batch[np.repeat(np.arange(len(near)), np.diff(ends))][:, None]
+        theta2, floor, ceiling, assembly = (
+            np.array([getattr(guess, name) for guess, _ in every])
+            for name in ("theta2", "floor", "ceiling", "assembly")
+        )
+        order = np.array([passage.order(len(task)) for _, passage in every])
+        low, high = np.array([passage.bounds(len(task)) for _, passage in every]).swapaxes(0, 1)
+        model = squares(linkages, task, assembly, order)
+        points = (task.positions @ np.array([1, 1j]))[order]
+
+        def gaps(angle: FloatArray) -> FloatArray:
+            p = solve_position(linkages[..., None], angle, assembly[..., None]).p @ np.array([1, 1j])
+            return np.asarray(np.nan_to_num(np.abs(p - points[..., None]), nan=np.inf))
+
+        theta2, value = lowest_in_order(model, theta2, (low, high), (floor, ceiling))
+        moved = _beside(gaps, model, theta2, value, np.maximum(floor, low), np.minimum(ceiling, high))
+        if (other := (moved != theta2).any(axis=1)).any():
+            moved, depth = lowest_in_order(model, moved, (low, high), (floor, ceiling))
+            deeper = (other & (depth.sum(axis=1) < value.sum(axis=1)))[:, None]
+            theta2, value = np.where(deeper, moved, theta2), np.where(deeper, depth, value)
+    for first, end in pairwise(ends.tolist()):
+        if first == end:
+            yield None
+            continue
+        level = as_good(task, value[first:end].sum(axis=1))
+        row = first + int(np.argmin(np.where(level, np.ptp(theta2[first:end], axis=1), np.inf)))
+        sense = every[row][1].direction
+        yield theta2[row][::sense], assembly[row][::sense], sense
 
 
 def _beside(
@@ -113,13 +157,14 @@ def _beside(
     gap = gaps(angle)
     valley = (gap[..., 1:-1] < gap[..., :-2]) & (gap[..., 1:-1] < gap[..., 2:])
     valley[..., len(_LOOK) // 2 - 1] = False
-    other = np.where(valley, gap[..., 1:-1], np.inf)
-    if np.isinf(other).all():
+    found = valley.any(axis=-1)
+    if not found.any():
         return theta2
-    chosen = np.argmin(other, axis=-1)[..., None] + 1
-    start = np.where(valley.any(axis=-1), np.take_along_axis(angle, chosen, axis=-1)[..., 0], theta2)
+    chosen = np.argmin(np.where(valley, gap[..., 1:-1], np.inf), axis=-1)[..., None] + 1
+    start = np.where(found, np.take_along_axis(angle, chosen, axis=-1)[..., 0], theta2)
     moved, depth = lowest(model, start, low, high)
-    return np.maximum.accumulate(np.where(depth < value * (1 - 1e-6), moved, theta2), axis=1)
+    deeper = found & (depth < value * (1 - 1e-6))
+    return np.maximum.accumulate(np.where(deeper, moved, theta2), axis=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,28 +236,39 @@ def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: flo
     return passages
 
 
-def met_in_time(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """Least weighted squares over the first driver angle, in either sense; None without an assembly."""
+def met_in_time(
+    members: Sequence[Linkage], batch: Linkage, task: Task, same_branch: bool, theta2_start: float | None
+) -> list[Met | None]:
+    """Least weighted squares over the first driver angle, in either sense, of each of a batch.
+
+    None without an assembly.
+    """
     turns = np.multiply.outer([1.0, -1.0], task.driver_turns)
-    own = int(linkage.assembly)
-    signs = np.array([own] if same_branch else [own, -own])
+    own = batch.assembly.astype(np.int64)
+    signs = np.stack([own] if same_branch else [own, -own])
     if theta2_start is None:
-        start, sense, low, high = _first_angles(linkage, task, turns, signs)
-        if not start.size:
-            return None
+        begun = [_first_angles(linkage, task, turns, same_branch) for linkage in members]
     else:
-        start, sense = np.full(2, theta2_start), np.array([0, 1])
-        low = high = start
-    start, value = lowest(_timed(linkage, task, turns[sense], signs), start, low, high)
-    best = int(np.argmax(as_good(task, value)))
-    theta2 = start[best] + turns[sense[best]]
-    side = np.argmin(misses(linkage, task, theta2, signs[:, None]), axis=0)
-    return theta2, signs[side], 1 - 2 * int(sense[best])
+        begun = [(np.full(2, theta2_start), np.array([0, 1]), *np.full((2, 2), theta2_start))] * len(members)
+    of = np.repeat(np.arange(len(members)), [len(start) for start, *_ in begun])
+    start, sense, low, high = (np.concatenate(each) for each in zip(*begun, strict=True))
+    start, value = lowest(_timed(batch[of], task, turns[sense], signs[:, of]), start, low, high)
+    found = list[Met | None]()
+    for row, linkage in enumerate(members):
+        mine = np.flatnonzero(of == row)
+        if not mine.size:
+            found.append(None)
+            continue
+        best = mine[np.argmax(as_good(task, value[mine]))]
+        theta2 = start[best] + turns[sense[best]]
+        side = np.argmin(misses(linkage, task, theta2, signs[:, row, None]), axis=0)
+        found.append((theta2, signs[side, row], 1 - 2 * int(sense[best])))
+    return found
 
 
 def _timed(linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray) -> Callable[[FloatArray], Model]:
-    """Sum of the squares, as a function of the driver angle at the first target; shapes (S,)."""
-    by_target = squares(linkage, task, signs[:, None, None])
+    """Sums of the squares of linkages (S,), as functions of the driver angle at the first target, (S,)."""
+    by_target = squares(linkage[:, None], task, signs[..., None])
 
     def model(start: FloatArray) -> Model:
         each = by_target(start[:, None] + turns)
@@ -224,12 +280,13 @@ def _timed(linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray) -> 
 
 
 def _first_angles(
-    linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray
+    linkage: Linkage, task: Task, turns: FloatArray, same_branch: bool
 ) -> tuple[FloatArray, IntArray, FloatArray, FloatArray]:
     """Driver angle at the first target in the deepest valleys, sense (row of `turns`), and bounds."""
-    found = []
+    own, found = int(linkage.assembly), []
+    signs = np.array([own] if same_branch else [own, -own])
     for sense, turn in enumerate(turns):
-        for low, high in _ranges(linkage, float(turn[-1]), len(signs) == 1):
+        for low, high in _ranges(linkage, float(turn[-1]), same_branch):
             grid = np.linspace(low, high, _STARTS + 1)
             miss = misses(linkage, task, grid[:, None] + turn, signs[:, None, None])
             value = (task.weights * miss.min(axis=0)).sum(axis=-1)
