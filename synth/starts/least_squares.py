@@ -52,7 +52,7 @@ SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are on
 # limits (in sizes).
 STAGES = ((800, 8, 0.3), (600, 10, 1.0), (300, 20, 5.0), (100, 100, 5.0))
 LONG, LONG_STEPS = 24, 20  # linkages of a thinned task that are improved on all targets, and their steps
-MIDDLE, MORE_STEPS = 64, 4  # of a very long task first on some, then in these steps on all
+MIDDLE, MORE_STEPS = 64, 8  # of a very long task first on some, then in these steps on all
 LAST_STEPS = 200  # and the best of them until little is gained
 LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
 COPY = 0.01  # sizes: two linkages closer at three targets are one

@@ -11,7 +11,7 @@ from grashof.analysis.curves.coupler_curve import Track
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 _KEPT = 4
-_GROUPS, _AT_ONCE = 24, 2  # of last pieces in a turn, and those looked into together
+_AT_ONCE = 16  # turns of which sums are computed together
 _SAGITTA = 5e-4  # of the length of the curve: no piece bulges farther from its chord
 _NEAR = 0.1  # rad: guesses closer than this lead to the same place
 
@@ -149,11 +149,11 @@ def assigned(
     pieces, found = chains.up_to(last + cyclic * turn), sums[last]
     short = pieces[:, -1] - pieces[:, 0] <= turn
     least = min(least, float(found[short].min(initial=np.inf)))
-    wanted = np.flatnonzero(found <= most(least))
-    if short[wanted].all():
-        pieces, found = pieces[wanted], found[wanted]
-    else:
+    wanted = found <= most(least)
+    if not short.all() and found[wanted].min(initial=np.inf) < least:
         pieces, found = _within_a_turn(costs, sums, most, least)
+    else:
+        pieces, found = pieces[wanted & short], found[wanted & short]
     order = np.argsort(found, kind="stable")[:_KEPT]
     return pieces[order] - pieces[order, :1] // turn * turn, found[order]
 
@@ -168,23 +168,14 @@ def _valleys(sums: FloatArray, before: float, after: float) -> IntArray:
 def _within_a_turn(
     costs: FloatArray, bounds: FloatArray, most: Callable[[float], float], least: float
 ) -> tuple[IntArray, FloatArray]:
-    """As `assigned`, where longer assignments cost less: `bounds` (M,) by the last piece.
-
-    Sums on more pieces than a turn has are lower bounds for the turns among them.
-    """
+    """As `assigned`, where longer assignments cost less: `bounds` (M,) by the last piece."""
     turn, around = len(bounds), np.concatenate([costs, costs], axis=1)
-    stride = max(turn // _GROUPS, 1)
-    begin, bounds = np.arange(0, turn, stride), np.minimum.reduceat(bounds, np.arange(0, turn, stride))
-    begin, bounds = begin[bounds <= most(least)], bounds[bounds <= most(least)]
-    bounds = np.maximum(bounds, _least_costs(around, begin, turn + stride))
     sums, order = np.full(turn, np.inf), np.argsort(bounds, kind="stable")
-    for at in range(0, len(order), _AT_ONCE):
-        groups = order[at : at + _AT_ONCE]
-        groups = groups[bounds[groups] <= most(least)]
-        if not groups.size or np.isinf(bounds[groups[0]]):
+    for at in range(0, turn, _AT_ONCE):
+        first = order[at : at + _AT_ONCE]
+        first = first[bounds[first] <= most(least)]
+        if not first.size or np.isinf(bounds[first[0]]):
             break
-        first = (begin[groups, None] + np.arange(stride)).ravel()
-        first = first[first < turn]
         sums[first] = _least_costs(around, first, turn + 1)
         least = min(least, float(sums[first].min()))
     first = _valleys(sums, sums[-1], sums[0])

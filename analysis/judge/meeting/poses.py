@@ -180,14 +180,17 @@ def poses_in_order(
     of the misses, then Newton's method in all angles. `valleys` are those of `Nearest`, if known.
     """
     own = np.full(len(task), int(linkage.assembly))
-    found = list[tuple[FloatArray, float]]()
+    found, least = list[tuple[FloatArray, float]](), np.inf
     if valleys is None:
         valleys = _on_own(linkage, *_valleys(linkage[None], task)[:2], 0)
     for places, miss, low, high in _by_range(linkage, task, valleys):
         limits = np.full((1, len(task)), low), np.full((1, len(task)), high)
         for sense in (1, -1):  # counted backwards, driver angles that fall grow
             order = slice(None, None, sense)
-            guesses = _guesses(places, miss[order], turns=not np.isfinite(low))
+            guesses, sums = _guesses(places, miss[order], least, turns=not np.isfinite(low))
+            if not sums.size:
+                continue
+            least = min(least, float(sums[0]))
             model = squares(linkage, task, own, order)
             theta2, value = lowest_in_order(model, guesses, (-_FREE, _FREE), limits)
             found += zip(theta2[:, order], value.sum(axis=1).tolist(), strict=True)
@@ -236,8 +239,13 @@ def _some(places: FloatArray) -> FloatArray:
     return places[np.unique(np.minimum(cells, _MOST - 1), return_index=True)[1]]
 
 
-def _guesses(places: FloatArray, miss: FloatArray, *, turns: bool) -> FloatArray:
-    """Driver angles (K, N) among given ones (M,) that do not go back, of the least sums of misses (N, M)."""
-    chosen, _ = assigned(miss, lambda least: _FOLLOWED * least, cyclic=turns)
+def _guesses(
+    places: FloatArray, miss: FloatArray, least: float, *, turns: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Driver angles (K, N) among given ones (M,) that do not go back, of the least sums of misses (N, M).
+
+    And those sums (K,), up to a share of the `least` one known.
+    """
+    chosen, sums = assigned(miss, lambda cost: _FOLLOWED * cost, least, cyclic=turns)
     turn, place = np.divmod(chosen, len(places))
-    return np.asarray(places[place] + TURN * turn)
+    return places[place] + TURN * turn, sums
