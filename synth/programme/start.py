@@ -218,3 +218,4 @@ class Round:
     free: bool = False  # no limit binds: starts with the same coupler curve are the same design or cognates
     together: bool = False  # all are judged before there are enough: their order does not show the best one
     skip: int = 0  # number of the next rounds that bring nothing new
+    reached: int = 0  # independent draws that led to the best of the starts, where they are counted

@@ -24,6 +24,7 @@ FRUITLESS = 64  # solves without a verified exact design after which the search 
 STALE = 20  # consecutive rounds without a new exact design after which it ends
 # Least squares: rounds that found the best design, or rounds in all, after which the search ends.
 AGREEING, MOST_ROUNDS = 3, 8
+REACHED = 8  # draws of one round that led to the best: where one is enough, the round confirms itself
 SAME = 1e-3  # share: errors closer to the best one are the best one
 COPY = 0.1  # of the expected_error: starts closer at all targets lead to the same design
 COPY_FLOOR = 1e-3  # sizes: where limits bind, closer than that at least
@@ -146,6 +147,7 @@ class Ledger:
     work: int = 0
     planned: float = np.inf
     _errors: list[float] = field(default_factory=list)  # the least of each round, sizes
+    _reached: int = 0  # draws of the latest round that led to its best start
     _stale: int = 0  # consecutive rounds without a new design
     _begun: list[ComplexArray] = field(default_factory=list)  # marks of starts that were solved
     _leaders: Leaders = field(init=False)
@@ -159,6 +161,7 @@ class Ledger:
         self.latest = made.starts
         self.work += made.size
         self._errors.append(np.inf)
+        self._reached = made.reached
         self._stale += bool(self.best)
 
     def worthwhile(self, made: Round, starts: Sequence[Proposal], *, first: bool) -> Sequence[Proposal]:
@@ -258,7 +261,8 @@ class Ledger:
         share = min(1.0, self.search.effort)
         if not self.scaled.by_descent:
             return bool(self._no_use)
-        agreeing = min(AGREEING, 1 + self.search.enough)
+        sure = bool(self.best) and self._reached >= REACHED and self._is_least(self._errors[-1])
+        agreeing = 2 - sure if self.search.enough == 1 else AGREEING
         agreed, many = self._came_up >= ceil(agreeing * share), max(1, round(MOST_ROUNDS * share))
         return agreed or len(self._errors) >= many or bool(self._no_use)
 
@@ -298,7 +302,10 @@ class Ledger:
     @property
     def _came_up(self) -> int:
         """Number of rounds that found the least error."""
-        return sum(error <= max(self.least * (1 + SAME), EXACT_ERROR) for error in self._errors)
+        return sum(map(self._is_least, self._errors))
+
+    def _is_least(self, error: float) -> bool:
+        return error <= max(self.least * (1 + SAME), EXACT_ERROR)
 
     @property
     def _no_use(self) -> str:

@@ -133,9 +133,14 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
     starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
     if target.timed and len(target.points) > MANY_TARGETS and not scaled.every_constraint:
         starts = [start.under(settled=True) for start in starts]  # as `_start` has it of the untimed
-    counts = {"feasible finds": len(feasible)}
+    counts, reached = {"feasible finds": len(feasible)}, _as_good(placed.error)
     most = size * MOST_CURVES * (2 if scaled.of_use else 1)
-    return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True)
+    return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True, reached=reached)
+
+
+def _as_good(square: FloatArray) -> int:
+    """The number of linkages with the least squared error."""
+    return int(np.count_nonzero(square <= np.nanmin(square, initial=np.inf) * (1 + SAME_ERROR) ** 2))
 
 
 def _other_curves(starts: list[Start], most: int) -> list[Start]:
@@ -156,7 +161,7 @@ def _limited_round(
 ) -> Round:
     """Starts of the search under every limit, from drawn linkages and those that fit best."""
     more = draw(_thinned(SearchTargets.of(scaled))[0], len(drawn), rng, ASTRAY)
-    before_limits, found = _search(scaled, joined(drawn, more), best, size)
+    before_limits, found, reached = _search(scaled, joined(drawn, more), best, size)
     linkages, error = _ranked(scaled, found)
     share = size * min(1.0, max(AMPLE / len(scaled.targets), FEWEST))
     first, others, before = (round(share * count) for count in (BEST, OTHERS, EARLY))
@@ -171,11 +176,12 @@ def _limited_round(
             replace(_start(scaled, early, error, k), expected_error=0.0).under(settled=False) for k in some
         ]
         prune = NEAR_BEST_SHIFTED
-    return Round(chosen, {"feasible finds": int(linkages.feasible.sum())}, size, prune)
+    counts = {"feasible finds": int(linkages.feasible.sum())}
+    return Round(chosen, counts, size, prune, reached=reached)
 
 
-def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:
-    """Linkages after the first stage, and after the last one."""
+def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch, int]:
+    """Linkages after the first stage and after the last one, and how many of these led to the best."""
     target = SearchTargets.of(scaled)
     some, index = _thinned(target)
     with np.errstate(all="ignore"):
@@ -190,6 +196,7 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
             batch, error = improve(model, batch, steps, 0.0)
             if number == 0:
                 early = batch
+        reached = _as_good(error)
         batch = _best_distinct(some, batch, error, len(batch), drawn=False)
         if len(index) < len(target.points):
             batch, weight = batch[: size * LONG], STAGES[-1][2]
@@ -202,7 +209,7 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
                 few = batch[order[: size * MOST_CURVES]]
                 batch = fitted_to_all(target, few, LAST_STEPS, weight=LAST_WEIGHT, placed=True)
             early = _with_places_refined(target, index, early[:: -(-len(early) // LONG) or 1])
-        return early, batch
+        return early, batch, reached
 
 
 def _fitted(

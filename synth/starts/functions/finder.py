@@ -86,7 +86,8 @@ class Functions(DesignFinder):
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """Exact designs at once; least errors, and then those at every transmission angle."""
-        if number >= self.rounds_a_pass or self.aims.obstacle:
+        alone = enough == 1 and self.scaled.problem.requirements.error_factor is None
+        if number >= (1 if alone else self.rounds_a_pass) or self.aims.obstacle:
             return None
         if self.aims.exact:
             batch = exact_functions(self.aims, rng, max(enough, 8) + SPARE, size)

@@ -14,6 +14,7 @@ from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.synth import Candidate
 from grashof.synth.designs.judging import judged, judged_again
 from grashof.synth.designs.ranking import BLOCK, _beaten, ranked
+from grashof.synth.programme.start import Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.chunks import arguments, chunk
@@ -44,6 +45,30 @@ def filled(scaled: ScaledProblem, attempts: list[Attempt]) -> Ledger:
         ledger.take(attempts[begin : begin + 16])
         ledger.rank()
     return ledger
+
+
+@pytest.mark.parametrize(
+    ("enough", "rounds", "ends"),
+    [
+        (1, [(2.0, 0), (2.0, 0)], [False, True]),  # two rounds agree
+        (1, [(2.0, 8)], [True]),  # or draws of one
+        (1, [(2.0, 0), (3.0, 20), (2.0, 0)], [False, False, True]),  # unless they agree on a worse one
+        (1, [(np.inf, 20), (2.0, 1)], [False, False]),
+        (20, [(2.0, 20), (2.0, 20), (2.0, 20)], [False, False, True]),
+    ],
+)
+def test_a_search_ends_once_the_least_error_stands(
+    attempts: list[Attempt], enough: int, rounds: list[tuple[float, int]], ends: list[bool]
+) -> None:
+    """Of rounds with a least error and a number of draws that led to it."""
+    problem, best = load("path-ellipse"), attempts[0].candidate
+    assert best is not None
+    ledger = Ledger(ScaledProblem.of(problem), replace(problem.search, enough=enough), "")
+    for (error, reached), ended in zip(rounds, ends, strict=True):
+        ledger.begin(Round([], {}, reached=reached))
+        ledger._errors[-1] = error
+        ledger.best = (best,) if ledger.least < np.inf else ()
+        assert ledger.ended is ended
 
 
 @pytest.mark.slow
