@@ -176,6 +176,6 @@ def error_of_use(scaled: ScaledProblem) -> float:
     """Greatest error of a useful design where zones are allowed, root mean square, sizes."""
     if scaled.zones is None:
         return 0.0
-    zones = np.where(np.isfinite(scaled.zones), scaled.zones, 0.0)
-    square = (scaled.weights * zones[0] ** 2 + scaled.turn_weights * zones[1] ** 2).sum()
-    return float(np.sqrt(square / len(scaled.targets)))
+    zones, task = np.where(np.isfinite(scaled.zones), scaled.zones, 0.0), scaled.problem.task
+    square = task.weights @ (zones[0] ** 2 + (task.angle_length / scaled.frame.scale * zones[1]) ** 2)
+    return float(np.sqrt(square / len(task)))

@@ -50,7 +50,7 @@ def _nearest(linkage: Linkage, task: Task, same_branch: bool, theta2_start: floa
             angle[:, 0] = low[:, 0] = high[:, 0] = theta2_start
         angle, value = lowest(squares(linkage, task, assembly, weighted=False), angle, low, high)
         chosen = np.argmin(value, axis=0)
-        total = float((task.weights * value[chosen, target]).sum())
+        total = float((task.meeting_weights * value[chosen, target]).sum())
         if total < least:
             best, least = (angle[chosen, target], assembly[chosen, target], 0), total
     return best
@@ -217,7 +217,7 @@ def _with(guess: Guess, theta2: float, assembly: int, distance: float, at: int) 
 
 
 def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> list[_Passage]:
-    points, weights = task.positions @ np.array([1, 1j]), task.weights
+    points, weights = task.positions @ np.array([1, 1j]), task.meeting_weights
     if theta2_start is None:
         every = [Gaps.of(track, points, weights) for track in tracks(linkage, PIECES, same_branch)]
         return [passage for gaps in every for passage in (_Passage(gaps, 1), _Passage(gaps.reversed(), -1))]
@@ -289,7 +289,7 @@ def _first_angles(
         for low, high in _ranges(linkage, float(turn[-1]), same_branch):
             grid = np.linspace(low, high, _STARTS + 1)
             miss = misses(linkage, task, grid[:, None] + turn, signs[:, None, None])
-            value = (task.weights * miss.min(axis=0)).sum(axis=-1)
+            value = (task.meeting_weights * miss.min(axis=0)).sum(axis=-1)
             found += [(value[at], grid[at], sense, low, high) for at in valleys(value)]
     found.sort()
     columns = np.array(found[:_BASINS]).reshape(-1, 5).T

@@ -227,7 +227,7 @@ def _by_range(
     for places, low, high in ranges:
         places = _some(np.unique(places))
         miss = misses(linkage, task, places[:, None], np.asarray(int(linkage.assembly)))
-        judged.append((places, (miss * task.weights).T, low, high))
+        judged.append((places, (miss * task.meeting_weights).T, low, high))
     return judged
 
 

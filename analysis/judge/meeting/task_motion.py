@@ -52,13 +52,13 @@ class Targets:
 
 
 def misses(linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray) -> FloatArray:
-    """|dp|^2 + (angle_length * dangle)^2 of the given parts, shape (..., N); inf where it cannot close."""
+    """|dp|^2 + (length * dangle)^2 of the given parts, shape (..., N); inf where it cannot close."""
     state = solve_position(linkage, theta2, assembly)
     gap = state.p - task.positions
     miss: FloatArray = np.where(task.has_position, gap[..., 0] ** 2 + gap[..., 1] ** 2, 0.0)
     if task.has_angle.any():
         off = turned_from(state.carrying, task.angles - linkage.body_angle)
-        miss = miss + np.where(task.has_angle, task.angle_length * off, 0.0) ** 2
+        miss = miss + np.where(task.has_angle, task.meeting_lengths * off, 0.0) ** 2
     return np.nan_to_num(miss, nan=np.inf, posinf=np.inf)
 
 
@@ -71,11 +71,11 @@ def squares(
     weighted: bool = True,
 ) -> Callable[[FloatArray], Model]:
     """The misses as functions of driver angles (..., N), on given assemblies (..., N)."""
-    weights = task.weights if weighted else np.ones(len(task))
+    weights = task.meeting_weights if weighted else np.ones(len(task))
     point = np.nan_to_num(task.positions[order] @ np.array([1, 1j]))
     angle = np.nan_to_num(task.angles[order] - linkage.body_angle)
     by_point = (weights * task.has_position)[order]
-    by_angle = (weights * task.has_angle)[order] * task.angle_length**2
+    by_angle = (weights * task.has_angle * task.meeting_lengths**2)[order]
 
     def model(theta2: FloatArray) -> Model:
         p, rate, bend, theta, omega, alpha = coupler_motion(linkage, theta2, assembly)

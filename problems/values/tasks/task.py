@@ -208,6 +208,29 @@ class Task(GeneratedOutput, ReadOnly, ABC):
             turn = np.minimum(place / self.angle_length, np.pi)
         return np.where([self.has_position, self.has_angle], [place, turn], np.inf)
 
+    @property
+    def meeting_lengths(self) -> FloatArray:
+        """Length that one radian counts as where a linkage is placed at the targets, shape (N,).
+
+        The ratio of the zones of a target, where it has both.
+        """
+        usual = np.full(len(self), self.angle_length)
+        if self.zones is None:
+            return usual
+        place, turn = self.zones
+        return np.where(np.isfinite(place) & np.isfinite(turn), place / turn, usual)
+
+    @property
+    def meeting_weights(self) -> FloatArray:
+        """Of squared misses where a linkage is placed at the targets, shape (N,).
+
+        The farther a target may be missed, the less it counts beside the others.
+        """
+        if self.zones is None:
+            return self.weights
+        zones: FloatArray = np.fmin(self.zones[0], self.zones[1] * self.angle_length)
+        return self.weights * (zones.min() / zones) ** 2
+
     def with_zones(self, **zones: FloatArray | None) -> Self:
         """The same targets with other zones, by the names of `stated_zones`."""
         return replace(self, **zones)  # type: ignore[type-var]

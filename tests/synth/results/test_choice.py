@@ -103,6 +103,21 @@ ZONED: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.parametrize("seed", [0, 5])
+def test_a_planted_linkage_is_found_where_one_zone_is_wide(seed: int) -> None:
+    """Least squares of all points would be drawn to the one far away."""
+    rng = np.random.default_rng(seed)
+    task, _ = planted_path(rng, 7, timed=True)
+    points, zones = task.points.copy(), np.full(7, 0.01 * task.size)
+    points[3] += 0.25 * task.size * np.array([np.cos(seed), np.sin(seed)])
+    zones[3] = 0.3 * task.size
+    problem = Problem(task=PathTask(points, timing=task.timing, within=zones))
+    result = synthesize(problem)
+    assert len(result) > 0
+    for design in result.candidates:
+        check_zones(problem, design)
+
+
 @pytest.mark.slow
 @pytest.mark.quick("a zone each")
 @pytest.mark.parametrize("name", ZONED)

@@ -116,3 +116,34 @@ def test_the_driver_starts_within_half_a_turn(theta2: list[float], timed: bool) 
     assert -np.pi < motion.start <= np.pi
     turns = (motion.theta2 - angles) / TURN
     assert turns == pytest.approx(np.full(3, np.round(turns[0])), abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_timed_target_with_a_wide_zone_moves_the_others_out_of_no_zone(seed: int) -> None:
+    """One target is far from a planted path, within its zone; the others, on the path, have narrow zones."""
+    rng = np.random.default_rng([63, seed])
+    task, linkage = planted_path(rng, 7, timed=True)
+    points, zones = task.points.copy(), np.full(7, 0.01 * task.size)
+    points[3] += 0.25 * task.size * np.array([np.cos(seed), np.sin(seed)])
+    zones[3] = 0.3 * task.size
+    assert verify(linkage, PathTask(points, timing=task.timing, within=zones), Requirements()).ok
+
+
+@pytest.mark.parametrize("timed", [False, True])
+@pytest.mark.parametrize("seed", range(8))
+def test_poses_are_met_where_angles_have_narrow_zones_and_positions_wide_ones(seed: int, timed: bool) -> None:
+    rng = np.random.default_rng([64, seed])
+    task, linkage = planted_motion(rng, 6, timed=timed)
+    off = rng.normal(size=(6, 2))
+    off *= 0.3 * task.size * rng.random((6, 1)) / np.linalg.norm(off, axis=1, keepdims=True)
+    zones = {"within": np.full(6, 0.31 * task.size), "angle_within": np.full(6, 0.004)}
+    asked = MotionTask(task.positions + off, task.angles, timing=task.timing, **zones)
+    assert verify(linkage, asked, Requirements()).ok
+
+
+def test_zones_that_are_alike_change_no_driver_angle() -> None:
+    task, linkage = planted_motion(np.random.default_rng(65), 8)
+    there = perturbed(task, np.random.default_rng(66), 0.05)
+    zoned = MotionTask(there.positions, there.angles, within=0.4 * task.size)
+    plain, with_zones = (met(linkage, each, LEAST)[0].theta2 for each in (there, zoned))
+    np.testing.assert_allclose(plain, with_zones, atol=1e-9)
