@@ -228,8 +228,9 @@ class Task(GeneratedOutput, ReadOnly, ABC):
         """
         if self.zones is None:
             return self.weights
-        zones: FloatArray = np.fmin(self.zones[0], self.zones[1] * self.angle_length)
-        return self.weights * (zones.min() / zones) ** 2
+        zones = np.fmin(self.zones[0], self.zones[1] * self.angle_length)
+        weights: FloatArray = self.weights * (zones.min() / zones) ** 2
+        return weights
 
     def with_zones(self, **zones: FloatArray | None) -> Self:
         """The same targets with other zones, by the names of `stated_zones`."""
