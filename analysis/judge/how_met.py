@@ -13,9 +13,10 @@ from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.meeting.function_start import off_mirror
 from grashof.analysis.judge.meeting.inputs import Driven
-from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
+from grashof.analysis.judge.meeting.points import met_in_order, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion, task_motions
+from grashof.analysis.judge.meeting.timed import met_in_time
 from grashof.analysis.judge.meeting.two_outputs import TwoOutputs, two_outputs
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index

@@ -1,4 +1,4 @@
-"""Points met in order, by dynamic programming and Newton's method in all angles, singly, or in time."""
+"""Points met in order, by dynamic programming and Newton's method in all angles, or singly."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ import numpy as np
 
 from grashof.analysis.curves.coupler_curve import PIECES, Track, between, coupler_curve, range_around, tracks
 from grashof.analysis.judge.meeting.assignment import Gaps, Guess, nearest_guess, ordered_guesses, slack_of
-from grashof.analysis.judge.meeting.task_motion import as_good, misses, squares, valleys
-from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
+from grashof.analysis.judge.meeting.task_motion import as_good, squares
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model, lowest, lowest_in_order
 from grashof.problems import Linkage, Task
@@ -23,7 +22,6 @@ _BASINS = 4
 _BESIDE = 0.15  # rad
 _LOOK = np.linspace(-1, 1, 25)
 _AT_ONCE = 4000  # driver angles that are followed together, whose arrays fit into a cache
-_STARTS = 360  # driver angles at the first timed target, over the range of the driver
 
 # Where targets are met: driver angles and assemblies, each (N,), and the sense of the driver, 0 in no order.
 Met: TypeAlias = tuple[FloatArray, IntArray, int]
@@ -234,72 +232,3 @@ def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: flo
         gaps = Gaps.of(track, points[1:], weights[1:])
         passages.append(_Passage(gaps if sense > 0 else gaps.reversed(), sense, first))
     return passages
-
-
-def met_in_time(
-    members: Sequence[Linkage], batch: Linkage, task: Task, same_branch: bool, theta2_start: float | None
-) -> list[Met | None]:
-    """Least weighted squares over the first driver angle, in either sense, of each of a batch.
-
-    None without an assembly.
-    """
-    turns = np.multiply.outer([1.0, -1.0], task.driver_turns)
-    own = batch.assembly.astype(np.int64)
-    signs = np.stack([own] if same_branch else [own, -own])
-    if theta2_start is None:
-        begun = [_first_angles(linkage, task, turns, same_branch) for linkage in members]
-    else:
-        begun = [(np.full(2, theta2_start), np.array([0, 1]), *np.full((2, 2), theta2_start))] * len(members)
-    of = np.repeat(np.arange(len(members)), [len(start) for start, *_ in begun])
-    start, sense, low, high = (np.concatenate(each) for each in zip(*begun, strict=True))
-    start, value = lowest(_timed(batch[of], task, turns[sense], signs[:, of]), start, low, high)
-    found = list[Met | None]()
-    for row, linkage in enumerate(members):
-        mine = np.flatnonzero(of == row)
-        if not mine.size:
-            found.append(None)
-            continue
-        best = mine[np.argmax(as_good(task, value[mine]))]
-        theta2 = start[best] + turns[sense[best]]
-        side = np.argmin(misses(linkage, task, theta2, signs[:, row, None]), axis=0)
-        found.append((theta2, signs[side, row], 1 - 2 * int(sense[best])))
-    return found
-
-
-def _timed(linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray) -> Callable[[FloatArray], Model]:
-    """Sums of the squares of linkages (S,), as functions of the driver angle at the first target, (S,)."""
-    by_target = squares(linkage[:, None], task, signs[..., None])
-
-    def model(start: FloatArray) -> Model:
-        each = by_target(start[:, None] + turns)
-        side = np.argmin(each[0], axis=0)[None]
-        value, slope, second, positive = (np.take_along_axis(part, side, axis=0)[0] for part in each)
-        return value.sum(axis=-1), slope.sum(axis=-1), second.sum(axis=-1), positive.sum(axis=-1)
-
-    return model
-
-
-def _first_angles(
-    linkage: Linkage, task: Task, turns: FloatArray, same_branch: bool
-) -> tuple[FloatArray, IntArray, FloatArray, FloatArray]:
-    """Driver angle at the first target in the deepest valleys, sense (row of `turns`), and bounds."""
-    own, found = int(linkage.assembly), []
-    signs = np.array([own] if same_branch else [own, -own])
-    for sense, turn in enumerate(turns):
-        for low, high in _ranges(linkage, float(turn[-1]), same_branch):
-            grid = np.linspace(low, high, _STARTS + 1)
-            miss = misses(linkage, task, grid[:, None] + turn, signs[:, None, None])
-            value = (task.meeting_weights * miss.min(axis=0)).sum(axis=-1)
-            found += [(value[at], grid[at], sense, low, high) for at in valleys(value)]
-    found.sort()
-    columns = np.array(found[:_BASINS]).reshape(-1, 5).T
-    return columns[1], columns[2].astype(np.int64), columns[3], columns[4]
-
-
-def _ranges(linkage: Linkage, turn: float, same_branch: bool) -> list[tuple[float, float]]:
-    """Driver angles at the first target from which the entire rotation `turn` is possible."""
-    if not same_branch or closes_everywhere(linkage):
-        return [(float(linkage.theta1), float(linkage.theta1) + TURN)]
-    back, on = max(-turn, 0.0), max(turn, 0.0)
-    ends = driver_ranges(linkage)
-    return [(float(low) + back, float(high) - on) for low, high in ends if high - on >= low + back]

@@ -47,6 +47,11 @@ class Targets:
             np.where(task.has_angle, np.nan_to_num(turned, nan=np.pi), np.nan),
         )
 
+    def shares(self, zones: FloatArray) -> FloatArray:
+        """Misses as shares of zones (2, N), the greater one of position and angle."""
+        most: FloatArray = np.fmax(self.position_error / zones[0], self.angle_error / zones[1])
+        return most
+
     def __getitem__(self, index: int) -> Targets:
         return Targets(*(getattr(self, each.name)[index] for each in fields(self)[:-1]))
 
