@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,6 +19,7 @@ from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_orde
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion, task_motions
 from grashof.analysis.judge.meeting.timed import met_in_time
 from grashof.analysis.judge.meeting.two_outputs import TwoOutputs, two_outputs
+from grashof.analysis.judge.meeting.zones import each_within, first_within
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.analysis.mechanism.stroke import output_stroke
@@ -31,6 +33,7 @@ from grashof.problems import (
     Task,
 )
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+from grashof.problems.values.specs.problem import zones_of
 from grashof.problems.values.tasks.closed_curve import spline_length
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.stroke_task import EVEN
@@ -72,6 +75,12 @@ def meet(
     """
     how = _points_or_timed if task.is_timed or task.only_points else _poses
     found = how(members, batch, task, wanted)
+    if (zones := zones_of(task, wanted)) is not None and wanted.theta2_start_deg is None:
+        if task.is_timed:
+            within = partial(first_within, same_branch=wanted.same_branch)
+        else:
+            within = partial(each_within, ordered=wanted.order)
+        found = (within(one, task, zones, *met) for one, met in zip(members, found, strict=True))
     return [(targets, motion.closed() if task.closed else motion) for targets, motion in found]
 
 

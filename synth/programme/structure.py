@@ -173,11 +173,10 @@ def held_nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
         limit.quantity.over is Scope.TARGETS and name != "theta2_start_deg"
         for name, limit in wanted.limited.items()
     )
-    zoned = start.terms.zoned and scaled.has_angles and not scaled.timed  # a timed driver begins within zones
     torque = scaled.problem.torque
     placed = placed or (torque is not None and torque.over == "target")
     own = scaled.constraints or (start.terms.bounded and start.terms.objective is None)
-    every = bool(placed or moving or own or zoned)
+    every = bool(placed or moving or own)
     if scaled.timed:
         return (bool(every or scaled.at_targets) and wanted.theta2_start_deg is None,) * count
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed

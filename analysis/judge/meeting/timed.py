@@ -1,4 +1,4 @@
-"""Timed targets: the driver begins where the squares are least, or within all zones."""
+"""Timed targets: the driver begins where the squares are least."""
 
 from __future__ import annotations
 
@@ -7,16 +7,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from grashof.analysis.judge.meeting.points import Met
-from grashof.analysis.judge.meeting.task_motion import Targets, as_good, misses, squares, valleys
+from grashof.analysis.judge.meeting.task_motion import as_good, misses, squares, valleys
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.numerics.minimisation import Model, lowest
-from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 _BASINS = 4
 _STARTS = 360  # driver angles at the first target, over the range of the driver
-_CLOSER = 9  # rounds to the angle of the least greatest share, eightfold each
 
 
 def met_in_time(
@@ -43,41 +41,10 @@ def met_in_time(
             found.append(None)
             continue
         best = mine[np.argmax(as_good(task, value[mine]))]
-        begun = float(start[best]), int(sense[best])
-        if task.zones is not None and theta2_start is None:
-            begun = _within_zones(linkage, task, task.zones, turns, signs[:, row], begun)
-        theta2 = begun[0] + turns[begun[1]]
+        theta2 = start[best] + turns[sense[best]]
         side = np.argmin(misses(linkage, task, theta2, signs[:, row, None]), axis=0)
-        found.append((theta2, signs[side, row], 1 - 2 * begun[1]))
+        found.append((theta2, signs[side, row], 1 - 2 * int(sense[best])))
     return found
-
-
-def _within_zones(
-    linkage: Linkage,
-    task: Task,
-    zones: FloatArray,
-    turns: FloatArray,
-    signs: IntArray,
-    begun: tuple[float, int],
-) -> tuple[float, int]:
-    """First driver angle and sense; if a zone is missed, those of the least greatest share of a zone."""
-
-    def shares(starts: FloatArray, sense: int) -> FloatArray:
-        theta2 = starts[..., None] + turns[sense]
-        by_side = misses(linkage, task, theta2, signs.reshape(-1, *[1] * theta2.ndim))
-        assembly = signs[np.argmin(by_side, axis=0)]
-        most: FloatArray = Targets.of(linkage, task, theta2, assembly).shares(zones).max(axis=-1)
-        return most
-
-    if not shares(np.array(begun[0]), begun[1]) > 1:
-        return begun
-    found = [(np.inf, *begun)]
-    for sense, turn in enumerate(turns):
-        for low, high in _ranges(linkage, float(turn[-1]), len(signs) == 1):
-            grid = np.linspace(low, high, _STARTS + 1)
-            least, at = greatest(lambda starts: -shares(starts, sense), grid, rounds=_CLOSER)  # noqa: B023
-            found.append((-float(least[0]), float(at[0]), sense))
-    return min(found)[1:]
 
 
 def _timed(linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray) -> Callable[[FloatArray], Model]:
@@ -100,7 +67,7 @@ def _first_angles(
     own, found = int(linkage.assembly), []
     signs = np.array([own] if same_branch else [own, -own])
     for sense, turn in enumerate(turns):
-        for low, high in _ranges(linkage, float(turn[-1]), same_branch):
+        for low, high in first_ranges(linkage, float(turn[-1]), same_branch):
             grid = np.linspace(low, high, _STARTS + 1)
             miss = misses(linkage, task, grid[:, None] + turn, signs[:, None, None])
             value = (task.meeting_weights * miss.min(axis=0)).sum(axis=-1)
@@ -110,8 +77,8 @@ def _first_angles(
     return columns[1], columns[2].astype(np.int64), columns[3], columns[4]
 
 
-def _ranges(linkage: Linkage, turn: float, same_branch: bool) -> list[tuple[float, float]]:
-    """Driver angles at the first target from which the entire rotation `turn` is possible."""
+def first_ranges(linkage: Linkage, turn: float, same_branch: bool) -> list[tuple[float, float]]:
+    """Ranges of the driver angle at the first target from which the entire rotation `turn` is possible."""
     if not same_branch or closes_everywhere(linkage):
         return [(float(linkage.theta1), float(linkage.theta1) + TURN)]
     back, on = max(-turn, 0.0), max(turn, 0.0)

@@ -309,14 +309,7 @@ class Problem(ReadOnly):
         Each target's own zone, or a tolerance of `LEAST_TOLERANCE` and more where every target has
         to be met.
         """
-        task, wanted = self.task, self.requirements
-        if task.zones is not None or not task.in_plane:
-            return task.zones
-        if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
-            return None
-        radii = np.full((2, len(task)), wanted.tolerance * task.size)
-        radii[1] /= task.angle_length
-        return np.where([task.has_position, task.has_angle], radii, np.inf)
+        return zones_of(self.task, self.requirements)
 
     def without_zones(self, *, exact: bool | None = False) -> Problem:
         """The same problem without zones, by least squares unless `exact` states otherwise."""
@@ -374,3 +367,14 @@ class Problem(ReadOnly):
 
 _LISTED = ("outlines", "mechanism")  # with checks of their own
 _KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if name not in _LISTED}
+
+
+def zones_of(task: Task, wanted: Requirements) -> FloatArray | None:
+    """The zones of `Problem.zones`."""
+    if task.zones is not None or not task.in_plane:
+        return task.zones
+    if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
+        return None
+    radii = np.full((2, len(task)), wanted.tolerance * task.size)
+    radii[1] /= task.angle_length
+    return np.where([task.has_position, task.has_angle], radii, np.inf)

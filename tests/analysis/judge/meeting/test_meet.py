@@ -155,6 +155,25 @@ def test_a_timed_linkage_is_placed_within_its_zones_if_it_can_be(seed: int) -> N
     assert least_squares.position_error.max() >= zone / 1.0002
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_each_pose_is_met_within_its_zones_if_it_can_be(seed: int) -> None:
+    """Found anew on a grid of driver angles, in any order."""
+    rng = np.random.default_rng([68, seed])
+    task, linkage = planted_motion(rng, int(rng.integers(3, 10)))
+    there, ratio = perturbed(task, rng, 0.05), [0.3, 1.0, 3.0][seed % 3]  # rad of a zone per size
+    state = solve_position(linkage, np.linspace(0, TURN, 40_001)[:, None])
+    gap = np.linalg.norm(state.p - there.positions, axis=-1) / task.size
+    off = np.abs(np.angle(np.exp(1j * (state.theta3 + linkage.body_angle - there.angles)))) / ratio
+    zone = 1.0002 * np.nanmin(np.fmax(gap, off), axis=0).max()
+    zones = {"within": zone * task.size, "angle_within": zone * ratio}
+    asked = MotionTask(there.positions, there.angles, **zones)
+    assert not verify(linkage, asked, Requirements(order=False, same_branch=False)).defects
+    ordered = verify(linkage, asked, Requirements())
+    assert {each.requirement for each in ordered.defects} <= {"order", "within", "angle_within_deg"}
+    if ordered.order_ok:
+        assert (ordered.direction * np.diff(ordered.theta2) >= -1e-9).all()
+
+
 def test_zones_that_are_alike_change_no_driver_angle() -> None:
     task, linkage = planted_motion(np.random.default_rng(65), 8)
     there = perturbed(task, np.random.default_rng(66), 0.05)
