@@ -70,7 +70,7 @@ def lowest_in_order(
     damping, going = np.zeros((len(angle), 1)), np.full((len(angle), 1), True)
     for _ in range(_STEPS):
         weight = _pooled(angle, current) * (1 + damping)
-        weight = np.maximum(weight, _LEAST_WEIGHT * weight.mean(axis=1, keepdims=True))
+        weight = np.maximum(weight, _LEAST_WEIGHT * weight.mean(axis=1, keepdims=True) + 1e-300)
         wish = np.where(fixed, angle, angle - _quotient(current[1], weight))
         weight = np.where(fixed, weight.max(axis=1, keepdims=True) * _FIXED, weight)
         tried = _in_order(wish, weight, low, high)
@@ -157,18 +157,20 @@ def _chosen(better: BoolArray, fresh: Model, current: Model) -> Model:
 
 
 def _pooled(angle: FloatArray, model: Model) -> FloatArray:
-    """Curvature of each value, large enough to limit the step; equal angles share theirs."""
+    """Curvature of each value, large enough to limit the step; equal angles of a row share theirs."""
+    weight = np.maximum(_curvature(model), np.abs(model[1]) / _REACH)
     together = np.abs(np.diff(angle, axis=1, prepend=np.nan)) <= _SAME
-    if not together.any():
-        return np.maximum(_curvature(model), np.abs(model[1]) / _REACH)
-    first = np.flatnonzero(~together.ravel())
-    count = np.diff(np.append(first, angle.size))
-    means = [
-        np.repeat(np.add.reduceat(np.nan_to_num(part).ravel(), first) / count, count).reshape(angle.shape)
-        for part in model[1:]
-    ]
-    slope, second, positive = means
-    return np.maximum(_curvature((model[0], slope, second, positive)), np.abs(slope) / _REACH)
+    rows = np.flatnonzero(together.any(axis=1))
+    if rows.size:
+        first = np.flatnonzero(~together[rows].ravel())
+        count = np.diff(np.append(first, together[rows].size))
+        slope, second, positive = (
+            np.repeat(np.add.reduceat(np.nan_to_num(part[rows]).ravel(), first) / count, count)
+            for part in model[1:]
+        )
+        pooled = np.maximum(_curvature((slope, slope, second, positive)), np.abs(slope) / _REACH)
+        weight[rows] = pooled.reshape(len(rows), -1)
+    return weight
 
 
 def _in_order(wish: FloatArray, weight: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:

@@ -148,9 +148,10 @@ def assigned(
     last = _valleys(sums, *beside)
     pieces, found = chains.up_to(last + cyclic * turn), sums[last]
     short = pieces[:, -1] - pieces[:, 0] <= turn
-    least = min(least, float(found[short].min(initial=np.inf)))
+    own = float(found[short].min(initial=np.inf))
+    least = min(least, own)
     wanted = found <= most(least)
-    if not short.all() and found[wanted].min(initial=np.inf) < least:
+    if (found[wanted & ~short] < own).any():
         pieces, found = _within_a_turn(costs, sums, most, least)
     else:
         pieces, found = pieces[wanted & short], found[wanted & short]

@@ -162,7 +162,8 @@ def _beside(
     start = np.where(found, np.take_along_axis(angle, chosen, axis=-1)[..., 0], theta2)
     moved, depth = lowest(model, start, low, high)
     deeper = found & (depth < value * (1 - 1e-6))
-    return np.maximum.accumulate(np.where(deeper, moved, theta2), axis=1)
+    ordered = np.maximum.accumulate(np.where(deeper, moved, theta2), axis=1)
+    return np.where(found.any(axis=1, keepdims=True), ordered, theta2)  # no row depends on the others
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,6 +68,18 @@ def test_bounds_leave_out_no_assignment_that_is_wanted(count: int, noise: float)
     assert not assigned(costs, lambda cost: 1.5 * cost, 0.5 * least / 1.5, cyclic=True)[1].size
 
 
+def test_a_least_sum_from_elsewhere_leaves_out_nothing_that_is_wanted() -> None:
+    """Here the best assignment without a turn that binds is longer than one."""
+    costs = np.array([[0, 6, 2], [3, 9, 1], [5, 3, 4.0]])
+    assert assigned(costs, lambda cost: 3 * cost, 3.75, cyclic=True)[1][0] == 5
+    rng = np.random.default_rng(69)
+    for _ in range(200):
+        costs = rng.random((int(rng.integers(2, 9)), int(rng.integers(2, 12))))
+        least = least_in_a_turn(costs)
+        found = assigned(costs, lambda cost: 3 * cost, 0.5 * least, cyclic=True)[1]
+        assert found[0] == pytest.approx(least)
+
+
 def test_nothing_is_assigned_where_no_piece_is_allowed() -> None:
     costs = np.full((3, 12), np.inf)
     for cyclic in (True, False):

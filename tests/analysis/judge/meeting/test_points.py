@@ -13,8 +13,9 @@ from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_p
 from grashof.analysis.judge.how_met import meet
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
+from grashof.analysis.judge.verify import Judge, Subject
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
-from grashof.problems import FourBar, PathTask, Requirements
+from grashof.problems import FourBar, PathTask, Requirements, SliderCrank
 
 Array = npt.NDArray[np.float64]
 FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
@@ -237,3 +238,26 @@ def test_a_linkage_that_cannot_be_assembled_is_infinitely_far(
     )
     assert np.isinf(targets.position_error).all()
     assert np.isfinite(way.theta2).all()
+
+
+def test_the_company_of_a_linkage_changes_no_digit() -> None:
+    """Linkages that stand in dead positions have derivatives without a number there."""
+    dead = SliderCrank((0, 0), 1, 1, 0, 0, (0.11338696891106685, 0.2731129392268646), -1)
+    other = SliderCrank((-1.557, 0.0938), 1.4354, 2.4545, -0.36727, -2.86, (-0.0034, 0.995), -1)
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        theta2 = rng.choice([-1, 1]) * np.sort(rng.uniform(0, 6, 6))
+        points = solve_position(dead, theta2).p + 0.1 * rng.normal(size=(6, 2))
+        judge = Judge(PathTask(points), Requirements(exact=False, theta2_start_deg=90.0))
+        alone, together = (
+            judge.verdicts([Subject(dead)])[0],
+            judge.verdicts([Subject(other), Subject(dead)])[1],
+        )
+        assert alone.square == together.square
+        np.testing.assert_array_equal(alone.theta2, together.theta2)
+
+
+def test_a_linkage_at_rest_in_all_targets_gives_no_warning() -> None:
+    folded = SliderCrank((0, 0), 1, 1, 0, 0, (0.6, 1.1), -1)
+    points = [[-1.8, 3.2], [-1.7, 3.3], [-1.9, 3.4], [-1.7, 3.3]]
+    assert np.isfinite(sse(folded, PathTask(points), exact=False))
