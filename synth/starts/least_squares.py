@@ -19,10 +19,9 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, joined
 from grashof.synth.starts.coupler_search import FOUND, CouplerSearch
-from grashof.synth.starts.every_target import STEPS, costs_of_all, fitted_to_all
+from grashof.synth.starts.every_target import costs_of_all, fitted_to_all
 from grashof.synth.starts.loop_search import (
     PLACES,
-    PULL,
     Placed,
     cost_within_limits,
     draw,
@@ -52,7 +51,6 @@ SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are on
 # limits (in sizes).
 STAGES = ((800, 8, 0.3), (600, 10, 1.0), (300, 20, 5.0), (100, 100, 5.0))
 LONG, LONG_STEPS = 24, 20  # linkages of a thinned task that are improved on all targets, and their steps
-MIDDLE, MORE_STEPS = 64, 8  # of a very long task first on some, then in these steps on all
 LAST_STEPS = 200  # and the best of them until little is gained
 LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
 COPY = 0.01  # sizes: two linkages closer at three targets are one
@@ -108,10 +106,11 @@ def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch, size: 
     """Linkages that know the targets `index` with driver angles at every one, improved there."""
     if len(index) == len(target.points):
         return batch
+    batch = refined(target, index, batch)
     with np.errstate(all="ignore"):
         if target.timed:
-            return improve(fitting(target), refined(target, index, batch), LONG_STEPS, 0.0)[0]
-        batch = _fitted(target, index, batch)
+            return improve(fitting(target), batch, LONG_STEPS, 0.0)[0]
+        batch = fitted_to_all(target, batch)
         best = np.argsort(place(target, batch).error, kind="stable")
         few, rest = np.split(best, [size * MOST_CURVES])
         return joined(fitted_to_all(target, batch[few], LAST_STEPS), batch[rest])
@@ -139,7 +138,7 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
 
 
 def _as_good(square: FloatArray) -> int:
-    """The number of linkages with the least squared error."""
+    """The number of linkages whose squared error is the least."""
     return int(np.count_nonzero(square <= np.nanmin(square, initial=np.inf) * (1 + SAME_ERROR) ** 2))
 
 
@@ -199,30 +198,17 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
         reached = _as_good(error)
         batch = _best_distinct(some, batch, error, len(batch), drawn=False)
         if len(index) < len(target.points):
-            batch, weight = batch[: size * LONG], STAGES[-1][2]
+            batch = _with_places_refined(target, index, batch[: size * LONG])
+            weight = STAGES[-1][2]
             if target.timed:
-                batch = _with_places_refined(target, index, batch)
                 batch, _ = improve(within_limits(target, weight), batch, LONG_STEPS, 0.0)
             else:
-                batch = _fitted(target, index, batch, weight, placed=True)
+                batch = fitted_to_all(target, batch, weight=weight, placed=True)
                 order = np.argsort(costs_of_all(target, batch, weight), kind="stable")
                 few = batch[order[: size * MOST_CURVES]]
                 batch = fitted_to_all(target, few, LAST_STEPS, weight=LAST_WEIGHT, placed=True)
             early = _with_places_refined(target, index, early[:: -(-len(early) // LONG) or 1])
         return early, batch, reached
-
-
-def _fitted(
-    target: SearchTargets, index: IntArray, batch: Batch, weight: float = PULL, *, placed: bool = False
-) -> Batch:
-    """Linkages that know the targets `index`, fitted to every one; as of `fitted_to_all`."""
-    refine, steps = _with_places_refined if placed else refined, STEPS
-    if len(target.points) > 2 * MIDDLE:
-        some, more = thinned(target, MIDDLE, index)
-        batch = refine(some, np.searchsorted(more, index), batch)
-        batch = fitted_to_all(some, batch, weight=weight, placed=placed)
-        index, steps = more, MORE_STEPS
-    return fitted_to_all(target, refine(target, index, batch), steps, weight=weight, placed=placed)
 
 
 def _with_places_refined(target: SearchTargets, index: IntArray, batch: Batch) -> Batch:

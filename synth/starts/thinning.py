@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,18 +16,13 @@ AROUND = 180  # driver angles at which each of many targets in any order is look
 CLOSED = 1e-9  # of a unit vector
 
 
-def thinned(
-    target: SearchTargets, most: int, kept: Sequence[int] | IntArray = ()
-) -> tuple[SearchTargets, IntArray]:
-    """At most `most` targets, evenly picked, with some that are `kept`, and the indices of all these.
-
-    The first and the last target are among them.
-    """
+def thinned(target: SearchTargets, most: int) -> tuple[SearchTargets, IntArray]:
+    """At most `most` targets, evenly picked, and the indices of those; the first and the last are kept."""
     count = len(target.points)
     index = np.arange(count)
     if count <= most:
         return target, index
-    index = np.union1d(np.round(np.linspace(0, count - 1, most)), kept).astype(np.int64)
+    index = np.unique(np.round(np.linspace(0, count - 1, most)).astype(np.int64))
     return _some(target, index), index
 
 

@@ -15,7 +15,7 @@ from grashof.analysis.judge.meeting.task_motion import as_good, squares
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model, lowest, lowest_in_order
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 
 _VALLEYS = 3
 _BASINS = 4
@@ -155,7 +155,7 @@ def _beside(
     gap = gaps(angle)
     valley = (gap[..., 1:-1] < gap[..., :-2]) & (gap[..., 1:-1] < gap[..., 2:])
     valley[..., len(_LOOK) // 2 - 1] = False
-    found = valley.any(axis=-1)
+    found: BoolArray = np.asarray(valley.any(axis=-1))
     if not found.any():
         return theta2
     chosen = np.argmin(np.where(valley, gap[..., 1:-1], np.inf), axis=-1)[..., None] + 1
@@ -163,7 +163,8 @@ def _beside(
     moved, depth = lowest(model, start, low, high)
     deeper = found & (depth < value * (1 - 1e-6))
     ordered = np.maximum.accumulate(np.where(deeper, moved, theta2), axis=1)
-    return np.where(found.any(axis=1, keepdims=True), ordered, theta2)  # no row depends on the others
+    rows: BoolArray = np.asarray(found.any(axis=1))
+    return np.where(rows[:, None], ordered, theta2)  # no row depends on the others
 
 
 @dataclass(frozen=True, slots=True)
