@@ -71,7 +71,8 @@ def meet(
 
     With `order` in sequence in either sense within one turn, otherwise each by itself; with `same_branch`
     points keep to the own assembly and one range; of equal motions the shortest. Points and timed targets
-    begin at `theta2_start_deg`, where it is given.
+    begin at `theta2_start_deg`, where it is given; otherwise targets with zones are met within them, where
+    least squares leave one and other driver angles do not.
     """
     how = _points_or_timed if task.is_timed or task.only_points else _poses
     found = how(members, batch, task, wanted)

@@ -181,7 +181,9 @@ def held_nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
         return (bool(every or scaled.at_targets) and wanted.theta2_start_deg is None,) * count
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
     ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.terms.bounded))
-    nearest = np.full(count, every)
+    # where the first angle is given, the judge meets poses by least squares, whatever their zones
+    zoned = start.terms.zoned and scaled.has_angles and wanted.theta2_start_deg is not None
+    nearest = np.full(count, every or zoned)
     nearest[[0, -1]] |= ends or torque is not None
     nearest[[limit.k for limit in scaled.at_targets]] = True
     if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is given

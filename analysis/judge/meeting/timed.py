@@ -14,7 +14,7 @@ from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
 _BASINS = 4
-_STARTS = 360  # driver angles at the first target, over the range of the driver
+STARTS = 360  # driver angles at the first target, over the range of the driver
 
 
 def met_in_time(
@@ -68,7 +68,7 @@ def _first_angles(
     signs = np.array([own] if same_branch else [own, -own])
     for sense, turn in enumerate(turns):
         for low, high in first_ranges(linkage, float(turn[-1]), same_branch):
-            grid = np.linspace(low, high, _STARTS + 1)
+            grid = np.linspace(low, high, STARTS + 1)
             miss = misses(linkage, task, grid[:, None] + turn, signs[:, None, None])
             value = (task.meeting_weights * miss.min(axis=0)).sum(axis=-1)
             found += [(value[at], grid[at], sense, low, high) for at in valleys(value)]

@@ -7,13 +7,12 @@ from functools import partial
 import numpy as np
 
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, misses, task_motion
-from grashof.analysis.judge.meeting.timed import first_ranges
+from grashof.analysis.judge.meeting.timed import STARTS, first_ranges
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
 
-_STARTS = 360  # driver angles at the first timed target, over the range of the driver
 _BESIDE, _LOOKS = 0.5, 81  # rad to either side of a pose, and driver angles there
 _CLOSER = 9  # rounds to the angle of the least share, eightfold each
 
@@ -44,7 +43,7 @@ def first_within(
         for low, high in first_ranges(linkage, float(turn[-1]), same_branch):
             least, at = greatest(
                 lambda starts: -placed(starts, turn).shares(zones).max(axis=-1),  # noqa: B023
-                np.linspace(low, high, _STARTS + 1),
+                np.linspace(low, high, STARTS + 1),
                 rounds=_CLOSER,
             )
             found.append((-float(least[0]), float(at[0]), sense))

@@ -118,6 +118,17 @@ def test_a_planted_linkage_is_found_where_one_zone_is_wide(seed: int) -> None:
         check_zones(problem, design)
 
 
+def test_a_given_first_angle_and_zones_go_together() -> None:
+    task = MotionTask.from_degrees(
+        [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]], within=12, angle_within_deg=3
+    )
+    wanted = Requirements(link_length=(30, 400), transmission_min_deg=25, theta2_start_deg=170)
+    result = synthesize(Problem(task=task, requirements=wanted))
+    assert max(one.values["transmission"] for one in result.candidates) > np.radians(45)
+    for design in result.candidates:
+        assert np.degrees(design.verdict.theta2[0]) == pytest.approx(170, abs=1e-3)
+
+
 @pytest.mark.slow
 @pytest.mark.quick("a zone each")
 @pytest.mark.parametrize("name", ZONED)
