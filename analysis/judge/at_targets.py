@@ -9,13 +9,15 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.four_bar.instant_centres import instant_centres
-from grashof.analysis.judge.meeting.function_start import Misses, generated_rates, senses_of
+from grashof.analysis.judge.meeting.function_search import Misses
+from grashof.analysis.judge.meeting.generated import generated_rates, senses_of
 from grashof.analysis.judge.meeting.inputs import Input
 from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
+from grashof.analysis.numerics.peaks import crests
 from grashof.problems import DeadPositionWarning, Linkage, Region, Requirements, Task
 from grashof.problems.values.arrays import FloatArray, IntArray, Limits, turned_from
 from grashof.problems.values.requirements.distances import ends_of
@@ -153,7 +155,7 @@ def start_limits(linkage: Linkage, task: Task, wanted: Requirements, by: Input) 
             own = np.full(len(places), int(linkage.assembly))
             for _, values, allowed, unit in figures_at(linkage, limits, theta2, own, task.size):
                 over = excess(values, allowed) / task.size**unit.lengths
-                greatest = _crest(over) if limits in over_motion else over.max(axis=-1)
+                greatest = (_at_peaks(over) if limits in over_motion else over).max(axis=-1)
                 worst = np.maximum(worst, np.nan_to_num(greatest, nan=np.inf))
         return np.where(worst > SLACK, worst, 0.0)
 
@@ -184,13 +186,8 @@ def _some(wanted: Requirements, names: tuple[str, ...], count: int) -> tuple[Tar
     return (TargetLimits(targets=range(1, count + 1), **stated),) if stated else ()
 
 
-def _crest(values: FloatArray) -> FloatArray:
-    """The greatest of even samples (..., K), or of the parabola through it and its neighbours."""
-    before, here, after = values[..., :-2], values[..., 1:-1], values[..., 2:]
-    bend = 2 * here - before - after
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rise = np.where(
-            (here >= before) & (here >= after) & (bend > 0), (after - before) ** 2 / (8 * bend), 0.0
-        )
-    greatest: FloatArray = np.maximum(values.max(axis=-1), (here + rise).max(axis=-1))
-    return greatest
+def _at_peaks(values: FloatArray) -> FloatArray:
+    """The greatest about each inner one of even samples, (..., K)."""
+    reach = np.ones(values.shape[-1] - 2, dtype=np.intp)
+    reach[[0, -1]] = 2  # it may lie beside the first or last one
+    return crests(values[..., :-2], values[..., 1:-1], values[..., 2:], reach)

@@ -2,134 +2,76 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from grashof.analysis.judge.at_targets import SLACK, rate_misses, start_limits
-from grashof.analysis.judge.meeting.function_start import (
-    Beginning,
-    begins,
-    begins_mirrored,
-    generated_rates,
-    moved_output,
-    senses_of,
-    way_of,
-)
+from grashof.analysis.judge.meeting.function_start import Beginning, begins, begins_mirrored
+from grashof.analysis.judge.meeting.generated import generated_rates, way_of
 from grashof.analysis.judge.meeting.inputs import ByAngle, ByLength, Driven, input_of
+from grashof.analysis.judge.meeting.structural_error import DENSE, outputs_of, structural_errors
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
-from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Linkage, Requirements, Task, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray
 
-_DENSE = 721
-_GAUSS = 12  # points between two samples of the quadrature
-
-
-def output_error(
-    linkage: Linkage, task: Task, begun: Beginning, inputs: FloatArray, sense: int
-) -> FloatArray:
-    """Generated less wanted output, up to a constant, at growing inputs (K,), rad or length.
-
-    Positive where the output is ahead in the sense of the driver; NaN where the linkage cannot be assembled.
-    """
-    state = solve_position(linkage, begun.driver_angles(inputs))
-    found: FloatArray = moved_output(task, state, begun.direction) - sense * task.output(inputs)
-    return found
-
-
-def structural_error(
-    linkage: Linkage, task: Task, begun: Beginning, exact: bool
-) -> tuple[FloatArray, dict[str, Any]] | None:
-    """Generated less wanted output at the pairs (N,), rad or length, and the figures of a verdict.
-
-    None where the linkage cannot be assembled over the entire range. Extremes are refined, the mean square is
-    a Gauss-Legendre sum between samples and pairs. The output's zero is the mean of the errors at the pairs,
-    or the middle of the extremes where the greatest error counts and pairs need not be met; for a mirrored
-    linkage it lies in the mirrored position.
-    """
-    share = task.weights / task.weights.sum()
-    dense = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, _DENSE)]))
-    found = []
-    for sense in senses_of(task):
-        off = output_error(linkage, task, begun, dense, sense)
-        if np.isnan(off).any():
-            return None
-        at_pairs = off[np.searchsorted(dense, task.inputs)]
-        found.append((float(np.ptp(off)), sense, off, at_pairs))
-    _, sense, off, at_pairs = min(found, key=lambda each: each[:2])
-    zero = float(share @ at_pairs)
-
-    def curves(inputs: FloatArray) -> FloatArray:
-        order = np.argsort(inputs, kind="stable")
-        errors = np.empty(len(inputs))
-        found = output_error(linkage, task, begun, inputs[order], sense)
-        if not task.travels:  # without the full turns by which they may differ from the dense samples
-            found = found - TURN * np.round((found - np.interp(inputs[order], dense, off)) / TURN)
-        errors[order] = found
-        return np.stack([errors, -errors])
-
-    (high, low), (high_at, low_at) = (each.tolist() for each in peaks(curves, [dense]))
-    if task.mirror is not None:
-        zero = float(curves(np.array([task.mirror_turn]))[0, 0])
-    elif task.norm == "max" and not exact:
-        zero = (high - low) / 2
-    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    coarse = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, 25)]))
-    middle, half = (coarse[1:] + coarse[:-1]) / 2, np.diff(coarse) / 2
-    inner = (middle[:, None] + half[:, None] * nodes).ravel()
-    square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
-    above, below = high - zero, low + zero
-    worst, at = (above, high_at) if above >= below else (below, low_at)
-    return at_pairs - zero, {
-        "structural_error_max": worst,
-        "structural_error_rms": float(np.sqrt(square)),
-        "structural_error_at": float(begun.driver_turns(np.array([at]))[0]),
-        "output_zero": way_of(task, begun.direction) * zero,
-        "output_sense": sense,
-    }
+MetAsFunction: TypeAlias = tuple[Targets, TaskMotion, dict[str, Any] | None, tuple[Defect, ...]]
 
 
 def met_as_function(
-    linkage: Linkage, task: Task, wanted: Requirements, driven: Driven
-) -> tuple[Targets, TaskMotion, dict[str, Any] | None, tuple[Defect, ...]]:
-    """Driver angle and error at each pair, the motion, and the figures of the error, or None without one.
+    members: Sequence[Linkage], batch: Linkage, task: Task, wanted: Requirements, driven: Sequence[Driven]
+) -> Iterator[MetAsFunction]:
+    """Of each linkage, driver angles and errors at the pairs, the motion, and figures, or None without any.
 
     Last, the defects of rates beyond their limits. Where the inputs are lengths of a cylinder, the
     cylinder drives; without one there is no motion.
     """
+    begun = [_begun(linkage, task, wanted, by) for linkage, by in zip(members, driven, strict=True)]
+    moving = [row for row, each in enumerate(begun) if each is not None]
+    start = _start_of(wanted)
+    met = [each or _nowhere(task, start) for each in begun]
     exact = wanted.is_exact(task)
-    start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
+    found = dict(
+        zip(moving, structural_errors(batch[moving], task, [met[row] for row in moving], exact), strict=True)
+    )
+    for row, (linkage, at) in enumerate(zip(members, met, strict=True)):
+        errors, figures = found.get(row) or (np.full(len(task), np.inf), None)
+        theta2 = at.driver_angles(task.inputs)
+        free, own = np.full(len(task), np.nan), np.full(len(task), int(linkage.assembly))
+        first, last = at.driver_angles(np.array(task.span)).tolist()
+        motion = replace(TaskMotion.ordered(theta2, at.direction), start=first, end=last)
+        targets = Targets(theta2, own, free, free, np.abs(errors))
+        yield targets, motion, figures, tuple(_rate_defects(linkage, task, at, figures))
+
+
+def _start_of(wanted: Requirements) -> float | None:
+    return None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
+
+
+def _begun(linkage: Linkage, task: Task, wanted: Requirements, driven: Driven) -> Beginning | None:
+    """Where the driver of a linkage begins; None where it does not cover the range."""
+    exact, start = wanted.is_exact(task), _start_of(wanted)
     senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
     limited = start is None and wanted.transmission_over is TransmissionOver.TASK
     least = float(np.radians(wanted.transmission_min_deg)) if limited else 0.0
-    by = input_of(linkage, task, driven)
+    if (by := input_of(linkage, task, driven)) is None:
+        return None
     begun = None
-    if by is not None:
-        if task.mirror is not None:
-            begun = begins_mirrored(linkage, task, by, senses) or begins_mirrored(linkage, task, by, (1, -1))
-        misses = start_limits(linkage, task, wanted, by)
-        begun = begun or begins(linkage, task, by, exact, start, senses, least, misses)
-        if misses is not None:
-            begun = begun or begins(linkage, task, by, exact, start, senses, least)
-        # A linkage that misses a requirement from every start is reported where its error is least.
-        begun = begun or begins(linkage, task, by, exact, start, senses)
-        begun = begun or begins(linkage, task, by, exact, start)
-    met = begun or _nowhere(task, start)
-    first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)
-    met = replace(met, theta2=float(first))
-    theta2 = met.driver_angles(task.inputs)
-    found = structural_error(linkage, task, met, exact) if begun else None
-    errors, figures = (np.full(len(task), np.inf), None) if found is None else found
-    free, own = np.full(len(task), np.nan), np.full(len(task), int(linkage.assembly))
-    first, last = met.driver_angles(np.array(task.span)).tolist()
-    motion = replace(TaskMotion.ordered(theta2, met.direction), start=first, end=last)
-    targets = Targets(theta2, own, free, free, np.abs(errors))
-    return targets, motion, figures, tuple(_rate_defects(linkage, task, met, figures))
+    if task.mirror is not None:
+        begun = begins_mirrored(linkage, task, by, senses) or begins_mirrored(linkage, task, by, (1, -1))
+    misses = start_limits(linkage, task, wanted, by)
+    begun = begun or begins(linkage, task, by, exact, start, senses, least, misses)
+    if misses is not None:
+        begun = begun or begins(linkage, task, by, exact, start, senses, least)
+    # A linkage that misses a requirement from every start is reported where its error is least.
+    begun = begun or begins(linkage, task, by, exact, start, senses)
+    begun = begun or begins(linkage, task, by, exact, start)
+    if begun is None or start is not None:
+        return begun
+    return replace(begun, theta2=float(begun.theta2 - TURN * np.round(begun.theta2 / TURN)))
 
 
 def _rate_defects(
@@ -209,7 +151,7 @@ def function_curves(
     """
     if not np.isfinite(verdict.structural_error_max):
         return None
-    dense = np.linspace(*task.span, max(count, _DENSE))
+    dense = np.linspace(*task.span, max(count, DENSE))
     inputs = np.linspace(*task.span, count) if at is None else at
     every = np.unique(np.concatenate([dense, inputs]))
     by = input_of(linkage, task, Driven(verdict.cylinder))
@@ -217,7 +159,8 @@ def function_curves(
         return None
     begun = Beginning(float(verdict.theta2[0]), verdict.direction, by)
     way = way_of(task, verdict.direction)
-    off = output_error(linkage, task, begun, every, verdict.output_sense) - way * verdict.output_zero
+    outputs = outputs_of(linkage[None], task, [begun], every)[0]
+    off = outputs - verdict.output_sense * task.output(every) - way * verdict.output_zero
     middle = 0.0 if task.travels else TURN * np.round(np.median(off) / TURN)
     error = off[np.searchsorted(every, inputs)] - middle
     wanted = verdict.output_sense * task.output(inputs)

@@ -144,15 +144,19 @@ def _too_long(ratio: float, most: float) -> Defect:
     return Defect("length_ratio_max", what, ratio, f"up to {most:.6g}", miss)
 
 
-def _as_function(linkage: Linkage, task: Task, wanted: Requirements, driven: Driven) -> Met:
+def _as_function(
+    members: Members, batch: Linkage, task: Task, wanted: Requirements, driven: Sequence[Driven]
+) -> list[Met]:
     """The entire range counts, not only its pairs."""
-    targets, motion, figures, defects = met_as_function(linkage, task, wanted, driven)
-    theta2 = np.array([motion.start, *targets.theta2, motion.end])
-    assembly = np.full(len(theta2), int(linkage.assembly))
-    if task.mirror is not None:
-        defects = (*defects, *_mirror_missed(linkage, task, targets, motion))
-    covered = figures is not None
-    return Met(targets, motion, theta2, assembly, covered=covered, figures=figures or {}, defects=defects)
+    made = list[Met]()
+    found = met_as_function(members, batch, task, wanted, driven)
+    for linkage, (targets, motion, figures, defects) in zip(members, found, strict=True):
+        theta2 = np.array([motion.start, *targets.theta2, motion.end])
+        assembly, covered = np.full(len(theta2), int(linkage.assembly)), figures is not None
+        if task.mirror is not None:
+            defects = (*defects, *_mirror_missed(linkage, task, targets, motion))
+        made.append(Met(targets, motion, theta2, assembly, covered, figures or {}, defects))
+    return made
 
 
 def _mirror_missed(linkage: Linkage, task: Task, targets: Targets, motion: TaskMotion) -> Iterator[Defect]:
@@ -286,7 +290,7 @@ def _singly(how: Callable[[Linkage, Any, Requirements, Driven], Met]) -> HowMet:
 #: Of linkages of one kind, one by one and as a batch (B,), with the cylinders that drive them.
 HOW_MET: Mapping[type, HowMet] = {
     Task: _in_plane,
-    FunctionTask: _singly(_as_function),
+    FunctionTask: _as_function,
     StrokeTask: _singly(_between_limits),
     DwellTask: _singly(_standing_still),
     TandemTask: _singly(_in_tandem),

@@ -162,3 +162,20 @@ def vertex(
         away = (before - after) / (2 * bend)
     inside = (bend < 0) & (before <= middle) & (after <= middle)
     return np.where(inside, place + step * np.where(inside, away, 0.0), place)
+
+
+def crests(
+    before: FloatArray, here: FloatArray, after: FloatArray, reach: float | IntArray = 1
+) -> FloatArray:
+    """The greatest of three values at equal steps, or of the parabola through them.
+
+    The parabola counts where its vertex is at most `reach` half steps from the middle.
+
+    >>> float(crests(*map(np.float64, (0.0, 4.0, 4.0))))
+    4.5
+    """
+    bend, rise = 2 * here - before - after, after - before
+    among = (np.abs(rise) <= reach * bend) & (bend > 0)
+    above = np.divide(rise**2, 8 * bend, out=np.zeros_like(bend), where=among)
+    found: FloatArray = np.maximum(np.maximum(before, after), here + above)
+    return found
