@@ -58,9 +58,16 @@ class EvenMotion:
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
         """Driver angle at a share, which may exceed [0, 1] where the driver turns fully; shape (...), rad."""
         t = np.asarray(share, dtype=np.float64)
+        return self.held(t, self.first.theta2(self.share_of_first(t)))
+
+    def share_of_first(self, t: FloatArray) -> FloatArray:
+        """Shares of `first` at those of the motion, shape (...)."""
+        return self._bent(self.begin + (self.finish - self.begin) * t) if any(self.dead) else t
+
+    def held(self, t: FloatArray, angle: FloatArray) -> FloatArray:
+        """Driver angles at shares, held between the ends of the motion where `first` goes beyond, (...)."""
         if not any(self.dead):
-            return self.first.theta2(t)
-        angle = self.first.theta2(self._bent(self.begin + (self.finish - self.begin) * t))
+            return angle
         angle = np.clip(angle, min(self.start, self.end), max(self.start, self.end))
         return np.where(t == 0, self.start, np.where(t == 1, self.end, angle))
 
@@ -197,9 +204,19 @@ def angles_of_rows(
         return lambda share, rows: motion[rows].theta2(share)
     ends = zip(start.tolist(), end.tolist(), strict=True)
     motions = [even_motion(linkage[row], *each) for row, each in enumerate(ends)]
-    return lambda share, rows: np.stack(
-        [motions[row].theta2(each) for row, each in zip(rows.tolist(), share, strict=True)]
-    )
+    first = FirstMotion.stacked([each.first for each in motions])[:, None]
+
+    def angles(share: FloatArray, rows: IntArray) -> FloatArray:
+        beyond = [(at, motions[row]) for at, row in enumerate(rows.tolist()) if any(motions[row].dead)]
+        within = np.array(share)
+        for at, motion in beyond:
+            within[at] = motion.share_of_first(share[at])
+        found = first[rows].theta2(within)
+        for at, motion in beyond:
+            found[at] = motion.held(share[at], found[at])
+        return found
+
+    return angles
 
 
 def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
 from typing import Any
@@ -52,12 +52,25 @@ class FirstMotion:
     ratios: FloatArray = field(default_factory=lambda: np.empty(0))
     period: FloatArray = field(default_factory=lambda: _WHOLE)
 
+    @classmethod
+    def stacked(cls, motions: Sequence[FirstMotion]) -> FirstMotion:
+        """Motions of single linkages as a batch."""
+        names, most = cls._of_members(), max(len(each.ratios) for each in motions)
+        picked = {name: np.stack([getattr(each, name) for each in motions]) for name in names}
+        ratios = np.ones((most, len(motions)))  # a step with ratio 1 only doubles
+        for row, each in enumerate(motions):
+            ratios[: len(each.ratios), row] = each.ratios
+        return cls(**picked, ratios=ratios)
+
+    @classmethod
+    def _of_members(cls) -> list[str]:
+        """The names of fields of shape (...)."""
+        return [each.name for each in fields(cls) if each.name != "ratios"]
+
     def __getitem__(self, index: Any) -> FirstMotion:
         """Some of a batch, or with further axes, as of an array."""
         index = index if isinstance(index, tuple) else (index,)
-        picked = {
-            each.name: getattr(self, each.name)[index] for each in fields(self) if each.name != "ratios"
-        }
+        picked = {name: getattr(self, name)[index] for name in self._of_members()}
         return FirstMotion(**picked, ratios=self.ratios[(slice(None), *index)])
 
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
@@ -96,8 +109,7 @@ class FirstMotion:
         ratios = np.moveaxis(
             np.broadcast_to(np.moveaxis(self.ratios, 0, -1), (*shape, len(self.ratios))), -1, 0
         )
-        names = [each.name for each in fields(self) if each.name != "ratios"]
-        every = {name: np.broadcast_to(getattr(self, name), shape) for name in names}
+        every = {name: np.broadcast_to(getattr(self, name), shape) for name in self._of_members()}
         whole, found = FirstMotion(**every, ratios=ratios), np.empty(shape)
         for kind in kinds:
             rows = swing == kind

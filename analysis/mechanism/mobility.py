@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from grashof.analysis.mechanism.closing import closed_at, dyad_of
 from grashof.analysis.mechanism.first_loop import CHANGE, GrashofClass, first_loop, first_ranges
-from grashof.analysis.mechanism.second_loop import branches, cut, recurring
+from grashof.analysis.mechanism.second_loop import branches, cut, recurs
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 
@@ -111,8 +111,8 @@ def passes_change_point(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLi
     if len(linkage.mechanism.dyads) == 1:
         return np.asarray(passed)
 
-    def touches(single: Linkage, least: float, most: float) -> float:
-        return float(len(recurring(cut(single).touched, least, most)) > 0)
+    def touches(single: Linkage, least: FloatArray, most: FloatArray) -> FloatArray:
+        return np.asarray(recurs(cut(single).touched, least, most).any(axis=1), dtype=np.float64)
 
     return np.asarray(passed | (one_by_one(touches, linkage, low, high) > 0))
 
@@ -157,12 +157,15 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     return ranges
 
 
-def one_by_one(function: Callable[..., float], linkage: Linkage, *angles: npt.ArrayLike) -> FloatArray:
-    """Values of a function of a single linkage and driver angles, broadcast over a batch; shape (...)."""
-    members = [linkage[index] if index else linkage for index in np.ndindex(linkage.shape)]
-    every = np.broadcast(np.arange(len(members)).reshape(linkage.shape), *map(np.asarray, angles))
-    values = [function(members[number], *map(float, at)) for number, *at in every]
-    return np.array(values, dtype=np.float64).reshape(every.shape)
+def one_by_one(function: Callable[..., FloatArray], linkage: Linkage, *angles: npt.ArrayLike) -> FloatArray:
+    """Values of a function of a single linkage and its driver angles (N,), over a batch; shape (...)."""
+    number = np.arange(np.prod(linkage.shape, dtype=int)).reshape(linkage.shape)
+    number, *at = np.broadcast_arrays(number, *angles)
+    values = np.empty(number.shape)
+    for k, index in enumerate(np.ndindex(linkage.shape)):
+        own = number == k
+        values[own] = function(linkage[index] if index else linkage, *(each[own] for each in at))
+    return values
 
 
 def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:

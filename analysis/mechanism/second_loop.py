@@ -174,3 +174,9 @@ def recurring(angles: FloatArray, low: float, high: float) -> FloatArray:
     counts = np.arange(np.floor((low - TURN) / TURN), np.ceil((high + TURN) / TURN) + 1)
     every = np.sort((angles % TURN + TURN * counts[:, None]).ravel())
     return every[(every >= low) & (every <= high)]
+
+
+def recurs(angles: FloatArray, low: FloatArray, high: FloatArray) -> BoolArray:
+    """Which of angles (K,), but for full turns, lie between driver angles (N,), shape (N, K)."""
+    first, last = (np.subtract.outer(each, angles) / TURN for each in (low, high))
+    return np.asarray(np.floor(last) >= np.ceil(first))

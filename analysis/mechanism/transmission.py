@@ -8,7 +8,7 @@ import numpy.typing as npt
 from grashof.analysis.mechanism.closing import dyad_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_loop
 from grashof.analysis.mechanism.mobility import full_rotation, one_by_one, rotatability
-from grashof.analysis.mechanism.second_loop import cut, recurring, width
+from grashof.analysis.mechanism.second_loop import cut, recurring, recurs, width
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.errors import wrong_value
@@ -84,13 +84,12 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
     since the diagonal A-O4, or the distance of A from the slide, is monotone between. Those of a second loop
     are where the width of its gap has an extreme, sampled and refined.
     """
-    low = np.minimum(start, end) - linkage.theta1
-    high = np.maximum(start, end) - linkage.theta1
-    first, last = np.floor(low / np.pi), np.floor(high / np.pi)
+    low, high, theta1 = np.broadcast_arrays(np.minimum(start, end), np.maximum(start, end), linkage.theta1)
+    first, last = np.floor((low - theta1) / np.pi), np.floor((high - theta1) / np.pi)
     crossed = last - first
     even = (crossed >= 2) | ((crossed == 1) & (last % 2 == 0))
     odd = (crossed >= 2) | ((crossed == 1) & (last % 2 == 1))
-    at_ends = quality(transmission_angle(linkage, np.stack([low, high]) + linkage.theta1))
+    at_ends = quality(transmission_angle(linkage, np.stack([low, high])))
     worst: FloatArray = at_ends.min(axis=0)
     folded, stretched = ground_line_transmission(linkage)
     worst = np.where(even, np.minimum(worst, quality(folded)), worst)
@@ -98,10 +97,18 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
     if len(linkage.mechanism.dyads) == 1:
         return worst
 
-    def second(single: Linkage, one: float, other: float) -> float:
-        return float(quality(transmission_at_extremes(single, one, other, 2)[1]).min())
+    second = one_by_one(_of_second_loop, linkage, low, high)
+    return np.asarray(np.minimum(worst, second))[()]
 
-    return np.asarray(np.minimum(worst, one_by_one(second, linkage, start, end)))[()]
+
+def _of_second_loop(linkage: Linkage, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Least min(mu, pi - mu) of the second loop of a single linkage between driver angles (N,), rad."""
+    extremes = cut(linkage).extremes
+    at_ends = quality(transmission_angle(linkage, np.stack([low, high]), 2)).min(axis=0)
+    at_extremes = np.where(
+        recurs(extremes, low, high), quality(transmission_angle(linkage, extremes, 2)), np.inf
+    )
+    return np.asarray(np.minimum(at_ends, at_extremes.min(axis=1, initial=np.inf)))
 
 
 def transmission_at_extremes(

@@ -74,15 +74,19 @@ class Search:
             for sense in senses_of(self.task)
         )
 
-    def _values(self, starts: FloatArray, direction: int, sense: int, samples: int = _FINE) -> FloatArray:
+    def _values(self, starts: FloatArray, direction: int, sense: int) -> FloatArray:
         """RMS or greatest error for first angles (S,); infinite where a start is not allowed."""
+        return self._allowed(self._missed(starts, direction, sense), starts, direction)
+
+    def _missed(self, starts: FloatArray, direction: int, sense: int, samples: int = _FINE) -> FloatArray:
+        """The same of any start; NaN where the linkage does not close."""
         if not self.squares:
-            return self._highest(self._errors(starts, direction, sense, samples)[0], starts, direction)
+            return np.asarray(self._errors(starts, direction, sense, samples)[0].max(axis=(0, -1)))
         task, share = self.task, self.task.weights / self.task.weights.sum()
         moved = self._moved(starts, direction, task.inputs, unwrapped=False)
         off = _from_first(task, moved - sense * task.outputs)
         off = off - (off @ share)[:, None]
-        return self._allowed(np.sqrt(off**2 @ share), starts, direction)
+        return np.asarray(np.sqrt(off**2 @ share))
 
     def _moved(
         self, starts: FloatArray, direction: int, inputs: FloatArray, *, unwrapped: bool
@@ -113,12 +117,8 @@ class Search:
         jumps = not self.task.travels and bool((np.abs(moved) > np.pi).any())
         return np.stack([above - zero, below + zero]), jumps
 
-    def _highest(self, errors: FloatArray, starts: FloatArray, direction: int) -> FloatArray:
-        """Greatest errors (S,), as `_values`."""
-        return self._allowed(errors.max(axis=(0, -1)), starts, direction)
-
     def _allowed(self, values: FloatArray, starts: FloatArray, direction: int) -> FloatArray:
-        """Values (S,), infinite where there are none, transmission is too low, or limits are missed."""
+        """Values (..., S), infinite where there are none, transmission is too low, or limits are missed."""
         values = np.nan_to_num(values, nan=np.inf)
         if self.misses is not None:
             values = np.where(self.misses(starts, direction) > 0, np.inf, values)
@@ -147,8 +147,8 @@ class Search:
         if steps > 8 and not self.squares and isinstance(self.by, ByAngle):
             return self._at_common_angles(low, high, direction)
         starts = np.linspace(low, high, steps + 1)
-        found = [self._values(starts, direction, sense, _SAMPLES) for sense in senses_of(self.task)]
-        return starts, np.stack(found)
+        found = [self._missed(starts, direction, sense, _SAMPLES) for sense in senses_of(self.task)]
+        return starts, self._allowed(np.stack(found), starts, direction)
 
     def _at_common_angles(self, low: float, high: float, direction: int) -> tuple[FloatArray, FloatArray]:
         """The same where samples of one start are at driver angles of samples of others."""
@@ -166,8 +166,8 @@ class Search:
         starts, found = low + step * np.arange(count), list[FloatArray]()
         for sense in senses_of(self.task):
             off = moved - sense * self.task.output(inputs)
-            found.append(self._allowed((off.max(axis=1) - off.min(axis=1)) / 2, starts, direction))
-        return starts, np.stack(found)
+            found.append((off.max(axis=1) - off.min(axis=1)) / 2)
+        return starts, self._allowed(np.stack(found), starts, direction)
 
     def _narrow(self, starts: FloatArray, direction: int, reach: Limits) -> list[Valley]:
         """Starts between even ones where alone limits are kept."""
@@ -232,7 +232,8 @@ class Search:
                 values = self._values(places.ravel(), direction, sense).reshape(places.shape)
             else:
                 errors, jumps = self._errors(places.ravel(), direction, sense, _FINE, some)
-                values = self._highest(errors, places.ravel(), direction).reshape(places.shape)
+                values = self._allowed(errors.max(axis=(0, -1)), places.ravel(), direction)
+                values = values.reshape(places.shape)
                 if not jumps:
                     counts = _that_count(errors.reshape(2, *places.shape, -1), values)
                     some = np.flatnonzero(counts) if some is None else some[counts]
