@@ -16,7 +16,7 @@ from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.errors import wrong_value
 
 _MOST = 4  # runs to refine
-_ROUNDS = 8
+_ROUNDS = 30  # of ever closer starts: the length of a dwell has jumps
 _STEPS = 60
 _LEVEL = 4e-16
 

@@ -18,7 +18,7 @@ from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers, mean
 from grashof.analysis.mechanism.even_motion import close_samples, with_edges
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.numerics.peaks import Curve, peaks
+from grashof.analysis.numerics.peaks import SMOOTH, Curve, peaks
 from grashof.analysis.numerics.quadrature import settled_sums
 from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -201,7 +201,7 @@ def _peaks_of(some: Sequence[Motion], problem: Problem, *, torque_alone: bool = 
             batch, law, stretches = _together(some)
             outputs = problem.task.output_links(batch.mechanism)
             curves = _speeds(batch, law, outputs)
-            found[:, :TORQUE] = peaks(curves, stretches)[0].reshape(TORQUE, -1).T
+            found[:, :TORQUE] = peaks(curves, stretches, SMOOTH)[0].reshape(TORQUE, -1).T
             if not outputs:
                 found[:, TORQUE - 1] = np.nan
         if problem.dynamics is not None:

@@ -8,6 +8,7 @@ from grashof.problems.values.arrays import FloatArray, IntArray
 
 _CROWD = 6.0 ** -np.arange(1, 6)  # distances from an expected bottom, shares of the bracket
 _NEAR = 0.2  # share of the bracket
+_APART = 1e-6  # the same: places that are closer are one, since rounding could decide between them
 _AWAY = np.concatenate([-_CROWD, [0.0], _CROWD])
 
 
@@ -24,19 +25,11 @@ def closer(places: FloatArray, values: FloatArray) -> FloatArray:
     >>> bool(np.ptp(x) < 1e-9), bool(x.min() <= 0.4 <= x.max())
     (True, True)
     """
-    near = _five(places, values.argmin(axis=1)[:, None])
+    near = five(places, values.argmin(axis=1)[:, None])
     x, y = (np.take_along_axis(each, near, axis=1) for each in (places, values))
     low, here, high = x[:, 1], x[:, 2], x[:, 3]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slopes = np.diff(y, axis=1) / np.diff(x, axis=1)
-        bend = (slopes[:, 2] - slopes[:, 1]) / (high - low)
-        expected = np.stack([
-            here + _crossing(here, x[:, 3], y[:, 2], y[:, 3], slopes[:, 1], slopes[:, 3]),
-            here - _crossing(-here, -x[:, 1], y[:, 2], y[:, 1], -slopes[:, 2], -slopes[:, 0]),
-            (low + here) / 2 - slopes[:, 1] / (2 * bend),
-        ], axis=1)  # fmt: skip
-    inside = (expected >= low[:, None]) & (expected <= high[:, None])
-    expected = np.where(inside, expected, here[:, None])
+    expected = bottoms(x, y)
+    expected = np.where(np.isfinite(expected), expected, here[:, None])
     span = (high - low)[:, None]
     crowded = (expected[:, :, None] + span[:, :, None] * _AWAY).reshape(len(places), 3 * _AWAY.size)
     even = low[:, None] + span * np.linspace(0, 1, crowded.shape[1])
@@ -47,19 +40,37 @@ def closer(places: FloatArray, values: FloatArray) -> FloatArray:
     return found
 
 
-def _five(places: FloatArray, middle: IntArray) -> IntArray:
-    """Indices (V, 5) of two lower places, the middle one (V, 1), and two higher ones; at ends, of the end."""
-    found = [middle]
+def five(places: FloatArray, middle: IntArray) -> IntArray:
+    """Indices (..., 5) of two lower places, a middle one (..., 1), and two higher ones; at ends, of the end.
+
+    Places (..., P) ascend; those that hardly differ count once.
+    """
+    found, gap = [middle], (places[..., -1:] - places[..., :1]) * _APART
     for _ in range(2):
-        least, most = (np.take_along_axis(places, each, axis=1) for each in (found[0], found[-1]))
-        below, above = (each.sum(axis=1, keepdims=True) for each in (places < least, places <= most))
-        found = [np.maximum(below - 1, 0), *found, np.minimum(above, places.shape[1] - 1)]
-    return np.concatenate(found, axis=1)
+        least, most = (np.take_along_axis(places, each, axis=-1) for each in (found[0], found[-1]))
+        below, above = (
+            each.sum(axis=-1, keepdims=True) for each in (places < least - gap, places <= most + gap)
+        )
+        found = [np.maximum(below - 1, 0), *found, np.minimum(above, places.shape[-1] - 1)]
+    return np.concatenate(found, axis=-1)
 
 
-def _crossing(
-    here: FloatArray, there: FloatArray, low: FloatArray, high: FloatArray, into: FloatArray, away: FloatArray
-) -> FloatArray:
-    """Distance from `here` at which a line through it meets one through `there`, by values and slopes."""
-    found: FloatArray = (high - low - away * (there - here)) / (into - away)
-    return found
+def bottoms(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Places (..., 3) at which five places and values (..., 5), of lowest middle, let a bottom be expected.
+
+    At a kink below it, at a kink above it, or at the vertex of a parabola; NaN where that is not between its
+    neighbours.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slopes = np.diff(y, axis=-1) / np.diff(x, axis=-1)
+        (low, here, high), (one, two, three, four) = (
+            np.moveaxis(each, -1, 0) for each in (x[..., 1:4], slopes)
+        )
+        rise = np.moveaxis(np.diff(y[..., 1:4], axis=-1), -1, 0)
+        found = np.stack([
+            low + (rise[0] - three * (here - low)) / (one - three),
+            here + (rise[1] - four * (high - here)) / (two - four),
+            (low + here) / 2 - two * (high - low) / (2 * (three - two)),
+        ], axis=-1)  # fmt: skip
+    inside = (found >= low[..., None]) & (found <= high[..., None])
+    return np.where(inside, found, np.nan)

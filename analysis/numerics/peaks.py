@@ -7,23 +7,28 @@ from typing import TypeAlias
 
 import numpy as np
 
+from grashof.analysis.numerics.brackets import bottoms, five
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
 _MOST = 3
-_POINTS = 17
-_ROUNDS = 4  # each narrows the place of a peak eight times; a parabola follows
-
-_CLOSER = 5  # rounds for each extreme of one curve
+_STEP = 1 / 16  # share of a bracket
+_SLOW = 1 / 4  # a bracket that shrinks less has no such peak: even places follow
+_EVEN = np.arange(1, 6) / 6
+ROUNDS, SMOOTH = 8, 4  # of curves that may have kinks and jumps, and of those without
+_CLOSER = 4  # rounds for each extreme of one curve
 _HALVINGS = 64
 
 Curve: TypeAlias = Callable[[FloatArray], FloatArray]  # one curve, or the rows of several
 
 
-def peaks(curves: Curve, stretches: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+def peaks(
+    curves: Curve, stretches: Sequence[FloatArray], rounds: int = ROUNDS
+) -> tuple[FloatArray, FloatArray]:
     """Greatest value and its place, (R, ...), of R curves over stretches of ascending samples (..., N).
 
     Peaks narrower than the spacing of the samples may be missed; shorter rows repeat their last sample. NaN
     counts as infinite, and a curve whose first sample is infinite has no other peak.
+    `rounds` are those of `greatest`.
     """
 
     def each_its_own(places: FloatArray) -> FloatArray:
@@ -32,41 +37,66 @@ def peaks(curves: Curve, stretches: Sequence[FloatArray]) -> tuple[FloatArray, F
         values = np.where(np.isnan(values), np.inf, values)
         return own(np.moveaxis(values.reshape(len(values), *beside.shape), -2, 1))
 
-    found = [greatest(each_its_own, at) for at in stretches]
+    found = [greatest(each_its_own, at, rounds=rounds) for at in stretches]
     values, places = (np.stack(each) for each in zip(*found, strict=True))
     best = values.argmax(axis=0)[None]
     return np.take_along_axis(values, best, axis=0)[0], np.take_along_axis(places, best, axis=0)[0]
 
 
 def greatest(
-    curves: Curve, places: FloatArray, most: int = _MOST, rounds: int = _ROUNDS
+    curves: Curve, places: FloatArray, most: int = _MOST, rounds: int = ROUNDS
 ) -> tuple[FloatArray, FloatArray]:
     """Greatest value and its place, (R, ...), of R curves over ascending dense samples (..., N).
 
     Repeated samples count once. Curves take (1, ..., N) or each its own (R, ..., N), see `own`. The `most`
-    highest samples are refined `rounds` times, eightfold each; four suffice for smooth curves.
+    highest samples are refined by `rounds` steps to where samples about each let its peak be expected: four
+    suffice for smooth curves, and eight for kinks; one at a jump is found to a thousandth of the spacing.
     """
     values = curves(places[None])
     summit = summits(values)
     summit[..., 1:] &= places[..., 1:] > places[..., :-1]
     top = highest(np.where(summit, values, -np.inf), most)
-    all_places = np.broadcast_to(places, values.shape)
-    at, heights = [_taken(all_places, top)], [_taken(values, top)]
-    low, high = (_taken(all_places, np.clip(top + k, 0, places.shape[-1] - 1)) for k in (-1, 1))
+    near = np.clip(top[..., None] + np.arange(-2, 3), 0, places.shape[-1] - 1)
+    every = np.broadcast_to(places, values.shape)
+    x, y = (_taken(each, near.reshape(*top.shape[:-1], -1)).reshape(near.shape) for each in (every, values))
+    slow = np.zeros((*top.shape, 1), dtype=bool)
     for _ in range(rounds):
-        near = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, _POINTS)
-        near[..., -1] = high  # not beyond by rounding
-        here = curves(near.reshape(*top.shape[:-1], -1)).reshape(near.shape)
-        peak = here.argmax(axis=-1)[..., None]
-        at.append(_taken(near, peak)[..., 0])
-        heights.append(_taken(here, peak)[..., 0])
-        low, high = (_taken(near, np.clip(peak + k, 0, _POINTS - 1))[..., 0] for k in (-1, 1))
-    beside = [_taken(here, np.clip(peak + k, 0, _POINTS - 1))[..., 0] for k in (-1, 0, 1)]
-    at.append(np.clip(vertex(at[-1], near[..., 1] - near[..., 0], *beside), near[..., 0], near[..., -1]))
-    heights.append(curves(at[-1]))
-    every, where = np.concatenate(heights, axis=-1), np.concatenate(at, axis=-1)
-    best = every.argmax(axis=-1)[..., None]
-    return _taken(every, best)[..., 0], _taken(where, best)[..., 0]
+        width = x[..., 3:4] - x[..., 1:2]
+        tried = np.where(slow, x[..., 1:2] + width * _EVEN, _about_peaks(x, y))
+        heights = curves(tried.reshape(*top.shape[:-1], -1)).reshape(tried.shape)
+        x, y = _with(x, y, tried, heights)
+        slow = x[..., 3:4] - x[..., 1:2] > width * _SLOW
+    vertices = bottoms(x, -y)[..., 2]
+    vertices = np.where(np.isfinite(vertices), vertices, x[..., 2])
+    where = np.concatenate([x[..., 2], vertices], axis=-1)
+    found = np.concatenate([y[..., 2], curves(vertices)], axis=-1)
+    best = found.argmax(axis=-1)[..., None]
+    return _taken(found, best)[..., 0], _taken(where, best)[..., 0]
+
+
+def _with(
+    x: FloatArray, y: FloatArray, places: FloatArray, values: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Five places about the highest of some and others, (..., 5), and their values."""
+    x, y = np.concatenate([x, places], axis=-1), np.concatenate([y, values], axis=-1)
+    order = np.argsort(x, axis=-1, kind="stable")
+    x, y = _taken(x, order), _taken(y, order)
+    around = five(x, y.argmax(axis=-1)[..., None])
+    return _taken(x, around), _taken(y, around)
+
+
+def _about_peaks(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Places (..., 5) at and beside the peaks that five samples (..., 5) let expect.
+
+    Where none are expected, half way to the neighbours.
+    """
+    low, here, high = np.moveaxis(x[..., 1:4], -1, 0)
+    halves = np.stack([(low + here) / 2, (here + high) / 2, here], axis=-1)
+    expected = bottoms(x, -y)
+    below, above, vertex = np.moveaxis(np.where(np.isfinite(expected), expected, halves), -1, 0)
+    step = (high - low) * _STEP
+    tried = np.stack([below, above, vertex - step, vertex, vertex + step], axis=-1)
+    return np.asarray(np.clip(tried, low[..., None], high[..., None]))
 
 
 def with_extremes(curve: Curve, places: FloatArray, *, periodic: bool) -> tuple[FloatArray, FloatArray]:
