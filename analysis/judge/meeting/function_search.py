@@ -76,10 +76,10 @@ class Search:
 
     def _values(self, starts: FloatArray, direction: int, sense: int) -> FloatArray:
         """RMS or greatest error for first angles (S,); infinite where a start is not allowed."""
-        return self._allowed(self._missed(starts, direction, sense), starts, direction)
+        return self._allowed(self._unlimited(starts, direction, sense), starts, direction)
 
-    def _missed(self, starts: FloatArray, direction: int, sense: int, samples: int = _FINE) -> FloatArray:
-        """The same of any start; NaN where the linkage does not close."""
+    def _unlimited(self, starts: FloatArray, direction: int, sense: int, samples: int = _FINE) -> FloatArray:
+        """The same without limits; NaN where the linkage does not close."""
         if not self.squares:
             return np.asarray(self._errors(starts, direction, sense, samples)[0].max(axis=(0, -1)))
         task, share = self.task, self.task.weights / self.task.weights.sum()
@@ -147,7 +147,7 @@ class Search:
         if steps > 8 and not self.squares and isinstance(self.by, ByAngle):
             return self._at_common_angles(low, high, direction)
         starts = np.linspace(low, high, steps + 1)
-        found = [self._missed(starts, direction, sense, _SAMPLES) for sense in senses_of(self.task)]
+        found = [self._unlimited(starts, direction, sense, _SAMPLES) for sense in senses_of(self.task)]
         return starts, self._allowed(np.stack(found), starts, direction)
 
     def _at_common_angles(self, low: float, high: float, direction: int) -> tuple[FloatArray, FloatArray]:

@@ -86,7 +86,8 @@ class _Error:
     def figures(self, exact: bool) -> Iterator[Errors]:
         """The errors of each at the pairs, and the figures of its verdict."""
         task, share = self.task, self.task.weights / self.task.weights.sum()
-        at_pairs = self.off[:, np.searchsorted(self.dense, task.inputs)]
+        # In rows: sums depend on the layout, in their last bits.
+        at_pairs = np.ascontiguousarray(self.off[:, np.searchsorted(self.dense, task.inputs)])
 
         def both(inputs: FloatArray) -> FloatArray:
             errors = self.at(inputs)

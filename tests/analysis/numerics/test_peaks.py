@@ -66,6 +66,23 @@ def test_each_round_finds_a_kink_eight_times_as_closely(rounds: int) -> None:
     assert abs(places[0] - 0.7654321) <= 2 * (2 / 49) / 8**rounds + 1e-15
 
 
+def test_kinks_are_found_almost_to_rounding_and_jumps_to_a_thousandth_of_the_spacing() -> None:
+    rng = np.random.default_rng(4)
+    at, rise, fall = rng.uniform(0.5, 5.5, 40), rng.uniform(0.1, 5, 40), rng.uniform(0.1, 5, 40)
+
+    def kinks(x: Floats) -> Floats:
+        away = x - at[:, None]
+        return np.minimum(rise[:, None] * np.expm1(away / 2), -fall[:, None] * np.sinh(away))
+
+    def jumps(x: Floats) -> Floats:
+        away = x - at[:, None]
+        return np.where(away <= 0, rise[:, None] * away, -10.0)
+
+    dense = np.linspace(0, 6, 721)
+    np.testing.assert_allclose(peaks(kinks, [dense])[0], 0, atol=1e-11)
+    np.testing.assert_allclose(peaks(jumps, [dense])[1], at, atol=1e-3 * dense[1])
+
+
 def test_rows_that_repeat_their_last_place_are_unchanged() -> None:
     """Three maxima, one at the end, which must not displace the others."""
 

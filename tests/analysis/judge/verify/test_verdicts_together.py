@@ -5,10 +5,9 @@ import pytest
 from random_linkages import KINDS, ROWS, any_linkages, six_bars
 from same_values import check_same
 
-from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.analysis.judge.verify import Judge, Subject
-from grashof.problems import Linkage, MotionTask, Requirements
+from grashof.problems import FunctionTask, Linkage, MotionTask, Requirements
 
 POSES, POSED = planted_motion(np.random.default_rng(1), poses=4)
 POINTS, LED = planted_path(np.random.default_rng(2), points=6)
@@ -33,14 +32,29 @@ def linkages() -> list[Linkage]:
     return [found[k] for k in order]
 
 
-@pytest.mark.parametrize("name", TASKS)
-def test_a_verdict_does_not_depend_on_its_company(name: str) -> None:
-    task, wanted = TASKS[name]
-    requirements = Requirements(transmission_min_deg=20, **wanted)
-    every = linkages()
-    judge = Judge(task, requirements)
+def agree(judge: Judge, every: list[Linkage]) -> None:
+    """Verdicts together, in either order, are those of linkages alone."""
     together = judge.verdicts([Subject(each) for each in every])
     reverse = judge.verdicts([Subject(each) for each in every[::-1]])[::-1]
     for linkage, one, other in zip(every, together, reverse, strict=True):
-        check_same(one, verify(linkage, task, requirements))
+        check_same(one, judge.verdicts([Subject(linkage)])[0])
         check_same(one, other)
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_a_verdict_does_not_depend_on_its_company(name: str) -> None:
+    task, wanted = TASKS[name]
+    agree(Judge(task, Requirements(transmission_min_deg=20, **wanted)), linkages())
+
+
+@pytest.mark.parametrize("norm", ["max", "rms"])
+def test_nor_does_one_on_a_function(norm: str) -> None:
+    """Of linkages that turn their last link; some do not cover the range."""
+    task = FunctionTask.from_degrees([0, 40, 120, 200], [0, 9, 25, 47], sense="either", norm=norm)
+    every = [each for each in linkages() if each.mechanism.loops[-1].pinned]
+    judge = Judge(task, Requirements(exact=False, transmission_min_deg=20))
+    agree(judge, every)
+    errors = [each.structural_error_max for each in judge.verdicts([Subject(each) for each in every])]
+    stuck = [each for each, error in zip(every, errors, strict=True) if not np.isfinite(error)]
+    assert 0 < len(stuck) < len(every)
+    agree(judge, stuck)
