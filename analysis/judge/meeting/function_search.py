@@ -15,7 +15,7 @@ from grashof.analysis.judge.meeting.task_motion import valleys
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
-from grashof.analysis.numerics.brackets import closer
+from grashof.analysis.numerics.brackets import closer, five
 from grashof.analysis.numerics.peaks import crests
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, Limits, turned_from
@@ -209,8 +209,10 @@ class Search:
             known = min((each.value for each in found), default=np.inf)
             for at, valley in self._narrowed(group, known):
                 bottom = self._newton(at, direction, sense) if self.squares else at
-                value = self._value(bottom, direction, sense)
-                found.append(valley._replace(value=value, start=bottom))
+                tried = np.array([bottom, valley.start])
+                values = self._values(tried, direction, sense)
+                lowest = int(values.argmin())
+                found.append(valley._replace(value=float(values[lowest]), start=float(tried[lowest])))
         return found
 
     def _value(self, start: float, direction: int, sense: int) -> float:
@@ -235,7 +237,7 @@ class Search:
                 values = self._allowed(errors.max(axis=(0, -1)), places.ravel(), direction)
                 values = values.reshape(places.shape)
                 if not jumps:
-                    counts = _that_count(errors.reshape(2, *places.shape, -1), values)
+                    counts = _that_count(errors.reshape(2, *places.shape, -1), places, values)
                     some = np.flatnonzero(counts) if some is None else some[counts]
             known = min(known, float(values.min()))
             kept = _least_between(values) <= known * SAME + NOTHING * self.task.output_unit
@@ -273,10 +275,9 @@ class Search:
         return at
 
 
-def _that_count(crests: FloatArray, values: FloatArray) -> BoolArray:
-    """Which of K curves (T, V, S, K) may be the greatest beside the lowest of S starts, by values (V, S)."""
-    near = values.argmin(axis=1)[:, None] + np.arange(-1, 2)
-    near = np.clip(near, 0, values.shape[1] - 1)[None, :, :, None]
+def _that_count(crests: FloatArray, places: FloatArray, values: FloatArray) -> BoolArray:
+    """Which of K curves (2, V, S, K) may be the greatest about the lowest of S places, by values (V, S)."""
+    near = five(places, values.argmin(axis=1)[:, None])[None, :, 1:4, None]
     crests = np.take_along_axis(crests, near, axis=2)
     reach, least = np.fmax.reduce(crests, axis=2), np.fmin.reduce(crests, axis=2)
     highest = np.fmin.reduce(crests.max(axis=-1), axis=2)
