@@ -27,8 +27,7 @@ def peaks(
     """Greatest value and its place, (R, ...), of R curves over stretches of ascending samples (..., N).
 
     Peaks narrower than the spacing of the samples may be missed; shorter rows repeat their last sample. NaN
-    counts as infinite, and a curve whose first sample is infinite has no other peak.
-    `rounds` are those of `greatest`.
+    counts as infinite, and a curve whose first sample is infinite has no other peak. Rounds as of `greatest`.
     """
 
     def each_its_own(places: FloatArray) -> FloatArray:
@@ -204,7 +203,8 @@ def crests(
     >>> float(crests(*map(np.float64, (0.0, 4.0, 4.0))))
     4.5
     """
-    bend, rise = 2 * here - before - after, after - before
+    with np.errstate(invalid="ignore"):  # of infinite values
+        bend, rise = 2 * here - before - after, after - before
     among = (np.abs(rise) <= reach * bend) & (bend > 0)
     above = np.divide(rise**2, 8 * bend, out=np.zeros_like(bend), where=among)
     found: FloatArray = np.maximum(np.maximum(before, after), here + above)

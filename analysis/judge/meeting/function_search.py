@@ -10,7 +10,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from grashof.analysis.judge.meeting.generated import moved_output, output_rate, senses_of, way_of
-from grashof.analysis.judge.meeting.inputs import ByAngle, Input
+from grashof.analysis.judge.meeting.inputs import Input
 from grashof.analysis.judge.meeting.task_motion import valleys
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.mechanism.position import solve_position
@@ -144,7 +144,7 @@ class Search:
     def _tried(self, low: float, high: float, direction: int) -> tuple[FloatArray, FloatArray]:
         """Starts (S,) from low to high, and the error of each at some samples, of each sense (T, S)."""
         steps = max(8, int(np.ceil(_STARTS * (high - low) / TURN)))
-        if steps > 8 and not self.squares and isinstance(self.by, ByAngle):
+        if steps > 8 and not self.squares and self.by.even:
             return self._at_common_angles(low, high, direction)
         starts = np.linspace(low, high, steps + 1)
         found = [self._unlimited(starts, direction, sense, _SAMPLES) for sense in senses_of(self.task)]

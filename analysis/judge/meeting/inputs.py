@@ -43,6 +43,11 @@ class Input(ABC):
         """Whether limits of the input depend on where it begins."""
         return False
 
+    @property
+    def even(self) -> bool:
+        """Whether even inputs turn link 2 evenly, wherever it begins."""
+        return False
+
     def missed(self, starts: FloatArray, direction: int, task: Task) -> FloatArray:
         """Excess over its limits from starts (S,), sizes, ratio or rad; not positive where they are kept."""
         return np.zeros(len(starts))
@@ -59,6 +64,10 @@ class Input(ABC):
 @dataclass(frozen=True, slots=True)
 class ByAngle(Input):
     """The input is the rotation of link 2."""
+
+    @property
+    def even(self) -> bool:
+        return True
 
     def turned(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
         return np.broadcast_to(inputs, (*np.shape(starts), len(inputs)))

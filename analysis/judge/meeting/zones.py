@@ -14,7 +14,7 @@ from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
 
 _BESIDE, _LOOKS = 0.5, 81  # rad to either side of a pose, and driver angles there
-_CLOSER = 9  # rounds to the angle of the least share, eightfold each
+_CLOSER = 9  # rounds to the angle of the least share
 
 
 def first_within(

@@ -23,7 +23,7 @@ def narrowed(function: Callable[[FloatArray], FloatArray], low: float, high: flo
 @given(
     at=st.floats(-0.9, 0.9), left=st.floats(0.01, 100), right=st.floats(0.01, 100), bend=st.floats(0, 1),
 )  # fmt: skip
-def test_a_kink_is_found_at_once(at: float, left: float, right: float, bend: float) -> None:
+def test_a_kink_is_found_in_a_few_rounds(at: float, left: float, right: float, bend: float) -> None:
     def kinked(x: FloatArray) -> FloatArray:
         away = x - at
         return np.maximum(-left * away, right * away) * (1 + bend * away**2)

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from grashof.analysis.numerics.peaks import greatest, peaks
+from grashof.analysis.numerics.peaks import crests, greatest, peaks
 
 Floats = npt.NDArray[np.float64]
 
@@ -81,6 +81,13 @@ def test_kinks_are_found_almost_to_rounding_and_jumps_to_a_thousandth_of_the_spa
     dense = np.linspace(0, 6, 721)
     np.testing.assert_allclose(peaks(kinks, [dense])[0], 0, atol=1e-11)
     np.testing.assert_allclose(peaks(jumps, [dense])[1], at, atol=1e-3 * dense[1])
+
+
+def test_crests_of_infinite_and_missing_values() -> None:
+    before, here, after = np.array(
+        [[0, np.inf, np.inf, 0, np.nan], [1, 0, np.inf, np.inf, 0], [0, 0, 1, np.inf, 0]]
+    )
+    np.testing.assert_array_equal(crests(before, here, after), [1, np.inf, np.inf, np.inf, np.nan])
 
 
 def test_rows_that_repeat_their_last_place_are_unchanged() -> None:

@@ -5,9 +5,10 @@ import pytest
 from random_linkages import KINDS, ROWS, any_linkages, six_bars
 from same_values import check_same
 
+from grashof.analysis import Verdict, verify
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.analysis.judge.verify import Judge, Subject
-from grashof.problems import FunctionTask, Linkage, MotionTask, Requirements
+from grashof.problems import FunctionTask, Linkage, MotionTask, Requirements, Task
 
 POSES, POSED = planted_motion(np.random.default_rng(1), poses=4)
 POINTS, LED = planted_path(np.random.default_rng(2), points=6)
@@ -32,19 +33,21 @@ def linkages() -> list[Linkage]:
     return [found[k] for k in order]
 
 
-def agree(judge: Judge, every: list[Linkage]) -> None:
-    """Verdicts together, in either order, are those of linkages alone."""
+def judged_alike(every: list[Linkage], task: Task, requirements: Requirements) -> list[Verdict]:
+    """Verdicts together, which in either order are those of linkages alone."""
+    judge = Judge(task, requirements)
     together = judge.verdicts([Subject(each) for each in every])
     reverse = judge.verdicts([Subject(each) for each in every[::-1]])[::-1]
     for linkage, one, other in zip(every, together, reverse, strict=True):
-        check_same(one, judge.verdicts([Subject(linkage)])[0])
+        check_same(one, verify(linkage, task, requirements))
         check_same(one, other)
+    return together
 
 
 @pytest.mark.parametrize("name", TASKS)
 def test_a_verdict_does_not_depend_on_its_company(name: str) -> None:
     task, wanted = TASKS[name]
-    agree(Judge(task, Requirements(transmission_min_deg=20, **wanted)), linkages())
+    judged_alike(linkages(), task, Requirements(transmission_min_deg=20, **wanted))
 
 
 @pytest.mark.parametrize("norm", ["max", "rms"])
@@ -52,9 +55,8 @@ def test_nor_does_one_on_a_function(norm: str) -> None:
     """Of linkages that turn their last link; some do not cover the range."""
     task = FunctionTask.from_degrees([0, 40, 120, 200], [0, 9, 25, 47], sense="either", norm=norm)
     every = [each for each in linkages() if each.mechanism.loops[-1].pinned]
-    judge = Judge(task, Requirements(exact=False, transmission_min_deg=20))
-    agree(judge, every)
-    errors = [each.structural_error_max for each in judge.verdicts([Subject(each) for each in every])]
+    requirements = Requirements(exact=False, transmission_min_deg=20)
+    errors = [each.structural_error_max for each in judged_alike(every, task, requirements)]
     stuck = [each for each, error in zip(every, errors, strict=True) if not np.isfinite(error)]
     assert 0 < len(stuck) < len(every)
-    agree(judge, stuck)
+    judged_alike(stuck, task, requirements)
