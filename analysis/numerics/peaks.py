@@ -14,8 +14,10 @@ _MOST = 3
 _STEP = 1 / 16  # share of a bracket
 _SLOW = 1 / 4  # a bracket that shrinks less has no such peak: even places follow
 _EVEN = np.arange(1, 6) / 6
-ROUNDS, SMOOTH = 8, 4  # of curves that may have kinks and jumps, and of those without
-_CLOSER = 4  # rounds for each extreme of one curve
+_FLAT = 1 / 4096  # share of the spacing: of places that tell where a smooth peak is
+_LEVEL, _ROUNDING = 1e-3, 1e-12  # shares of the fall over that, and of a peak, by which a vertex may be lower
+ROUNDS, SMOOTH = 8, 3  # of curves that may have kinks and jumps, and of those without
+_CLOSER = 3  # rounds for each extreme of one curve
 _HALVINGS = 64
 
 Curve: TypeAlias = Callable[[FloatArray], FloatArray]  # one curve, or the rows of several
@@ -48,7 +50,7 @@ def greatest(
     """Greatest value and its place, (R, ...), of R curves over ascending dense samples (..., N).
 
     Repeated samples count once. Curves take (1, ..., N) or each its own (R, ..., N), see `own`. The `most`
-    highest samples are refined by `rounds` steps to where samples about each let its peak be expected: four
+    highest samples are refined by `rounds` steps to where samples about each let its peak be expected: three
     suffice for smooth curves, and eight for kinks; one at a jump is found to a thousandth of the spacing.
     """
     values = curves(places[None])
@@ -58,19 +60,40 @@ def greatest(
     near = np.clip(top[..., None] + np.arange(-2, 3), 0, places.shape[-1] - 1)
     every = np.broadcast_to(places, values.shape)
     x, y = (_taken(each, near.reshape(*top.shape[:-1], -1)).reshape(near.shape) for each in (every, values))
-    slow = np.zeros((*top.shape, 1), dtype=bool)
+    reach, slow = (x[..., 1], x[..., 3]), np.zeros((*top.shape, 1), dtype=bool)
     for _ in range(rounds):
         width = x[..., 3:4] - x[..., 1:2]
         tried = np.where(slow, x[..., 1:2] + width * _EVEN, _about_peaks(x, y))
         heights = curves(tried.reshape(*top.shape[:-1], -1)).reshape(tried.shape)
         x, y = _with(x, y, tried, heights)
         slow = x[..., 3:4] - x[..., 1:2] > width * _SLOW
-    vertices = bottoms(x, -y)[..., 2]
-    vertices = np.where(np.isfinite(vertices), vertices, x[..., 2])
-    where = np.concatenate([x[..., 2], vertices], axis=-1)
-    found = np.concatenate([y[..., 2], curves(vertices)], axis=-1)
+    at, found = _levelled(curves, x, y, reach)
     best = found.argmax(axis=-1)[..., None]
-    return _taken(found, best)[..., 0], _taken(where, best)[..., 0]
+    return _taken(found, best)[..., 0], _taken(at, best)[..., 0]
+
+
+def _levelled(
+    curves: Curve, x: FloatArray, y: FloatArray, reach: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Places (..., M) of peaks by five samples (..., 5), within reach, and their values.
+
+    Values beside a smooth peak agree to rounding over half of the digits of its place: a parabola through
+    places further away has more of them. It counts where its vertex is as high.
+    """
+    (low, high), vertices = reach, bottoms(x, -y)[..., 2]
+    vertices = np.where(np.isfinite(vertices), vertices, x[..., 2])
+    step = (high - low) * _FLAT
+    near = np.stack([vertices - step, vertices, vertices + step], axis=-1)
+    tried = np.clip(near, low[..., None], high[..., None])
+    heights = curves(tried.reshape(*vertices.shape[:-1], -1)).reshape(tried.shape)
+    before, middle, after = np.moveaxis(heights, -1, 0)
+    level = np.where((near == tried).all(axis=-1), vertex(vertices, step, before, middle, after), vertices)
+    at, found = np.where(middle > y[..., 2], vertices, x[..., 2]), np.fmax(middle, y[..., 2])
+    higher = curves(level)
+    with np.errstate(invalid="ignore"):
+        fall, lower = found - np.maximum(before, after), found - higher
+        smooth = (lower <= _LEVEL * fall) & (lower <= _ROUNDING * np.abs(found))
+    return np.where(smooth, level, at), np.fmax(found, higher)
 
 
 def _with(

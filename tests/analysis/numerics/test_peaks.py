@@ -83,6 +83,16 @@ def test_kinks_are_found_almost_to_rounding_and_jumps_to_a_thousandth_of_the_spa
     np.testing.assert_allclose(peaks(jumps, [dense])[1], at, atol=1e-3 * dense[1])
 
 
+@pytest.mark.parametrize("count", [97, 721])
+def test_places_of_smooth_peaks_have_more_than_half_of_the_digits(count: int) -> None:
+    rng = np.random.default_rng(5)
+    at, skew = rng.uniform(1, 5, 100)[:, None], rng.uniform(-0.3, 0.3, 100)[:, None]
+    _, places = peaks(
+        lambda x: np.exp(3 * np.cos(x - at)) * (1 + skew * np.sin(x - at) ** 3), [np.linspace(0, 6.28, count)]
+    )
+    np.testing.assert_allclose(places, at[:, 0], atol=1e-9)
+
+
 def test_crests_of_infinite_and_missing_values() -> None:
     before, here, after = np.array(
         [[0, np.inf, np.inf, 0, np.nan], [1, 0, np.inf, np.inf, 0], [0, 0, 1, np.inf, 0]]
