@@ -9,7 +9,7 @@ inverted slider-crank r3 is there the variable length from A along the rod to B.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self, TypeAlias, cast
 
@@ -24,8 +24,8 @@ from grashof.synth.quantities.formulas import Formulas
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.theory.functions.output import Generators
 
-# r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
-Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
+# r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions), perhaps as a function.
+Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray | Callable[[], FloatArray]]
 # e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
 LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
 Directions: TypeAlias = tuple[ComplexArray, ComplexArray]  # e3 and e4 (n, N)

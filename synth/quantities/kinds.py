@@ -98,7 +98,7 @@ class FourBarKind(Kind):
 
         found = Differences(lengths, proportions)
         r2, r3, r4 = found.values.T
-        return (r2, r3, r4), found.slopes
+        return (r2, r3, r4), lambda: found.slopes
 
     def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
         coupler, output = b - a, b - o4[:, None]

@@ -5,7 +5,9 @@ The unknowns make linkages feasible by construction; the loop is in the frame of
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -182,20 +184,25 @@ class Leading(Protocol):
         """Whether the loops close everywhere, (n,)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Loop:
     """The closed loop in the frame of its kind, at every point; derivatives by the unknowns."""
 
     r2: FloatArray
     r3: FloatArray
     r4: FloatArray
-    by_lengths: FloatArray  # (n, 3 lengths, 3 proportions)
+    slopes: FloatArray | Callable[[], FloatArray]  # as `by_lengths`, or a function that gives them
     theta2: FloatArray
     e2: ComplexArray
     e3: ComplexArray
     e4: ComplexArray
     rod: FloatArray  # r3, (n, N) or (n, 1)
     closes: BoolArray
+
+    @cached_property
+    def by_lengths(self) -> FloatArray:
+        """Derivatives of r2, r3, r4 by the proportions, (n, 3, 3)."""
+        return self.slopes() if callable(self.slopes) else self.slopes
 
     @property
     def origin(self) -> ComplexArray:
@@ -212,11 +219,11 @@ class Loop:
         """Close the loop of every linkage at every target."""
         proportions = batch.unknowns[:, :PROPORTIONS]
         shape = target.kind.transmitting if target.transmitting else target.kind.lengths
-        lengths, by_lengths = shape(proportions, batch.longer_driver, target.wanted)
+        lengths, slopes = shape(proportions, batch.longer_driver, target.wanted)
         theta2 = driver_angles(target, batch.unknowns[:, PROPORTIONS:], batch.direction)
         e2 = np.exp(1j * theta2)
         e3, e4, rod, closes = target.kind.closed(lengths, e2, batch.assembly)
-        return cls(*lengths, by_lengths, theta2, e2, e3, e4, rod, closes)
+        return cls(*lengths, slopes, theta2, e2, e3, e4, rod, closes)
 
 
 def driver_angles(target: SearchTargets, unknowns: FloatArray, direction: FloatArray) -> FloatArray:

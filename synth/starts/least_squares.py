@@ -23,7 +23,7 @@ from grashof.synth.starts.every_target import costs_of_all, fitted_to_all
 from grashof.synth.starts.loop_search import (
     PLACES,
     Placed,
-    cost_within_limits,
+    WithinLimits,
     draw,
     fitting,
     improve,
@@ -31,7 +31,6 @@ from grashof.synth.starts.loop_search import (
     place,
     standing,
     with_places,
-    within_limits,
 )
 from grashof.synth.starts.thinning import refined, thinned
 from grashof.synth.theory.stopping import raise_if_overdue
@@ -49,7 +48,7 @@ SAME_ERROR = 1e-3  # share: a feasible linkage nearer to the best one shows that
 SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
 # Where limits bind: numbers of the best distinct ones that continue, their steps, and the weight of the
 # limits (in sizes).
-STAGES = ((800, 8, 0.3), (600, 10, 1.0), (300, 20, 5.0), (100, 100, 5.0))
+STAGES = ((600, 6, 1.0), (200, 60, 5.0))
 LONG, LONG_STEPS = 24, 20  # linkages of a thinned task that are improved on all targets, and their steps
 LAST_STEPS = 200  # and the best of them until little is gained
 LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
@@ -184,16 +183,14 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
     target = SearchTargets.of(scaled)
     some, index = _thinned(target)
     with np.errstate(all="ignore"):
-        batch = early = with_places(some, drawn)
-        for number, (keep, steps, weight) in enumerate(STAGES):
-            model = within_limits(some, weight)
-            if number == len(STAGES) - 2:
-                batch = joined(batch, with_places(some, best))
+        batch = with_places(some, joined(drawn, best))
+        for drawing, (keep, steps, weight) in zip((True, False), STAGES, strict=True):
+            model = WithinLimits(some, weight)
             raise_if_overdue()
-            error = cost_within_limits(some, batch, weight)
-            batch = _best_distinct(some, batch, error, size * keep, drawn=number == 0)
-            batch, error = improve(model, batch, steps, 0.0)
-            if number == 0:
+            batch = _best_distinct(some, batch, model.errors(batch), size * keep, drawn=drawing)
+            # bent steps follow the valleys along limits, which are narrow
+            batch, error = improve(model, batch, steps, 0.0, missed=None if drawing else model.missed)
+            if drawing:
                 early = batch
         reached = _as_good(error)
         batch = _best_distinct(some, batch, error, len(batch), drawn=False)
@@ -201,7 +198,7 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
             batch = _with_places_refined(target, index, batch[: size * LONG])
             weight = STAGES[-1][2]
             if target.timed:
-                batch, _ = improve(within_limits(target, weight), batch, LONG_STEPS, 0.0)
+                batch, _ = improve(WithinLimits(target, weight), batch, LONG_STEPS, 0.0)
             else:
                 batch = fitted_to_all(target, batch, weight=weight, placed=True)
                 order = np.argsort(costs_of_all(target, batch, weight), kind="stable")
@@ -227,7 +224,7 @@ def _ranked(scaled: ScaledProblem, batch: Batch) -> tuple[Screened, FloatArray]:
         with np.errstate(all="ignore"):
             error = costs_of_all(target, batch, STAGES[-1][2])
     else:
-        error = cost_within_limits(target, batch, STAGES[-1][2])
+        error = WithinLimits(target, STAGES[-1][2]).errors(batch)
     sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))
     linkages = judged(scaled, target, placed[sound], batch.direction[sound])
     unlimited = [GROUPS.index(name) for name in UNLIMITED]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -29,11 +29,16 @@ class Relative(View):
         self.r1, self.theta2, self.double_crank = 1.0, Dual(loop.theta2, by_theta2), loop.r2[:, None] > 1
         lengths = []
         for number, length in enumerate((loop.r2, loop.r3, loop.r4)):
-            slope = np.zeros((len(length), 1, by_theta2.shape[2]))
-            slope[:, 0, :3] = loop.by_lengths[:, number]
-            lengths.append(Dual(length[:, None], slope))
+            lengths.append(Dual(length[:, None], partial(_by_length, loop, number, by_theta2.shape[2])))
         self.r2, self.r3, self.r4 = lengths
         self.offset = self.r4  # as slider kinds have it
+
+
+def _by_length(loop: Loop, number: int, unknowns: int) -> FloatArray:
+    """Derivatives of a length of loops by the unknowns, (n, 1, M)."""
+    slope = np.zeros((len(loop.r2), 1, unknowns))
+    slope[:, 0, :3] = loop.by_lengths[:, number]
+    return slope
 
 
 class Placement(View):

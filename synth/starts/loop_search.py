@@ -157,7 +157,7 @@ def improve(
     """Levenberg-Marquardt on every linkage of a batch, and the errors (n,) in sizes squared.
 
     At most `steps`; stops as soon as `until` linkages have no greater error than `tolerance`, in sizes
-    squared. For models see `fitting` and `within_limits`. With `missed`, the residuals alone, steps are
+    squared. For models see `fitting` and `WithinLimits`. With `missed`, the residuals alone, steps are
     bent along the valley (geodesic acceleration, Transtrum & Sethna 2012), which pays where it is narrow.
     """
     raise_if_overdue()
@@ -268,13 +268,19 @@ def fitting(target: SearchTargets) -> Model:
     return model
 
 
-def within_limits(target: SearchTargets, weight: float) -> Model:
-    """The error, also in torque, under limits, for batches with places among the unknowns (`with_places`).
+@dataclass(frozen=True, slots=True)
+class WithinLimits:
+    """The error, also in torque, under limits, of batches with places among the unknowns (`with_places`).
 
     Overstepping a limit by one unit counts as an error of `weight`, in sizes.
     """
 
-    def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+    target: SearchTargets
+    weight: float
+
+    def __call__(self, batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Squared errors (n,), misses (n, R) and their derivatives (n, R, M)."""
+        target = self.target
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             loop, z = _loop_and_places(target, batch)
             n, width = batch.unknowns.shape
@@ -288,9 +294,9 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
             for k, spanned in enumerate((np.ones_like(loop.e2), loop.e2, loop.e3)):
                 for own, each in enumerate((root * spanned, 1j * root * spanned), width - PLACES + 2 * k):
                     by_p[:, 0, :, own], by_p[:, 1, :, own] = each.real, each.imag
-            error = np.where(loop.closes, (np.abs(residual) ** 2).sum(axis=1), np.inf)
             at = Placement(target, loop, by_theta2, by_theta3, z, by_z)
-            cost, missed, by_unknowns = _joined(target, at, residual, by_p, weight, error)
+            error = _squared(loop, residual)
+            cost, missed, by_unknowns = _joined(target, at, residual, by_p, self.weight, error)
             if target.torque is None:
                 return cost, missed, by_unknowns
             misses, by_misses = torque_residuals(target, at, batch)
@@ -300,25 +306,25 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
                 np.concatenate([by_unknowns, by_misses], axis=1),
             )
 
-    return model
+    def errors(self, batch: Batch) -> FloatArray:
+        """Squared errors alone."""
+        return _squared(*self._misses(batch))
 
+    def missed(self, batch: Batch) -> FloatArray:
+        """The misses alone."""
+        return self._misses(batch)[1]
 
-def cost_within_limits(target: SearchTargets, batch: Batch, weight: float) -> FloatArray:
-    """The first result of such a model alone, (n,)."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        loop, z = _loop_and_places(target, batch)
-        n, count = loop.theta2.shape
-        none = np.zeros((n, count, PROPORTIONS))  # derivatives that nobody asks for
-        by_z = np.zeros((n, 3, PROPORTIONS), dtype=np.complex128)
-        at = Placement(target, loop, none, none, z, by_z)
-        over, _ = oversteps(target, at)
-        turned, _ = body_turns(target, loop)
-        cost: FloatArray = (
-            _missed(target, loop, z) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
-        )
-        if target.torque is not None:
-            cost += (torque_residuals(target, at, batch)[0] ** 2).sum(axis=1)
-        return cost
+    def _misses(self, batch: Batch) -> tuple[Loop, FloatArray]:
+        target = self.target
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            loop, z = _loop_and_places(target, batch)
+            none = np.zeros((*loop.theta2.shape, PROPORTIONS))  # derivatives that nobody asks for
+            by_z = np.zeros((len(z), 3, PROPORTIONS), dtype=np.complex128)
+            at = Placement(target, loop, none, none, z, by_z)
+            residual, (turned, _) = _to_points(target, loop, z), body_turns(target, loop)
+            over, misses = oversteps(target, at)[0], torque_residuals(target, at, batch)[0]
+            parts = [residual.real, residual.imag, turned, self.weight * over, misses]
+            return loop, np.concatenate(parts, axis=1)
 
 
 PLACES = 6  # unknowns that place a linkage: real and imaginary parts of z0, z1, z2
@@ -337,14 +343,18 @@ def standing(target: SearchTargets, batch: Batch) -> Placed:
     """The linkages of a batch with places, as placed."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         loop, z = _loop_and_places(target, batch)
-        return _standing(target, loop, z, _missed(target, loop, z))
+        return _standing(target, loop, z, _squared(loop, _to_points(target, loop, z)))
 
 
-def _missed(target: SearchTargets, loop: Loop, z: ComplexArray) -> FloatArray:
-    """Weighted sum of squared distances from the points (n,); infinite where a loop does not close."""
-    fit = z[:, :1] + z[:, 1:2] * loop.e2 + z[:, 2:] * loop.e3
-    error = (target.weights * np.abs(target.points - fit) ** 2).sum(axis=1)
-    return np.where(loop.closes, error, np.inf)
+def _to_points(target: SearchTargets, loop: Loop, z: ComplexArray) -> ComplexArray:
+    """From P to the points, weighted (n, N)."""
+    root = np.sqrt(target.weights)
+    return (target.points - z[:, :1] - z[:, 1:2] * loop.e2 - z[:, 2:] * loop.e3) * root
+
+
+def _squared(loop: Loop, missed: FloatArray | ComplexArray) -> FloatArray:
+    """Sum of squares (n,); infinite where a loop does not close."""
+    return np.where(loop.closes, (np.abs(missed) ** 2).sum(axis=1), np.inf)
 
 
 def _loop_and_places(target: SearchTargets, batch: Batch) -> tuple[Loop, ComplexArray]:
@@ -359,13 +369,12 @@ def missed_places(
     """From P to the points, weighted (n, N), and the derivative of P with z held (n, 2, N, M): x, then y."""
     root = np.sqrt(target.weights)
     turned2, turned3 = z[:, 1:2] * loop.e2, z[:, 2:] * loop.e3
-    residual = (target.points - z[:, :1] - turned2 - turned3) * root
     slope = np.empty((len(z), 2, *by_theta2.shape[1:]))
     ahead2, ahead3 = 1j * root * turned2, 1j * root * turned3
     for axis, (by2, by3) in enumerate(((ahead2.real, ahead3.real), (ahead2.imag, ahead3.imag))):
         np.multiply(by2[..., None], by_theta2, out=slope[:, axis])
         slope[:, axis] += by3[..., None] * by_theta3
-    return residual, slope
+    return _to_points(target, loop, z), slope
 
 
 def _joined(

@@ -21,7 +21,7 @@ from grashof.synth.programme.structure import Form
 from grashof.synth.programme.user_functions import numpy_on_symbols
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import SearchTargets
-from grashof.synth.starts.loop_search import draw, fitting, improve, standing, with_places, within_limits
+from grashof.synth.starts.loop_search import WithinLimits, draw, fitting, improve, standing, with_places
 
 KINDS = tuple(ONE_LOOP)
 
@@ -88,8 +88,9 @@ def test_residuals_are_the_judges_and_have_the_right_slopes(kind: str) -> None:
     with np.errstate(all="ignore"):
         fitted, error = improve(fitting(target), draw(target, 300, rng), 20, 0.0)
         batch = with_places(target, fitted[np.argsort(error)[:5]])
-        model = within_limits(target, 1e-9)  # limits do not count
+        model = WithinLimits(target, 1e-9)  # limits do not count
         cost, residual, slope = model(batch)
+        np.testing.assert_allclose(model.missed(batch), residual, rtol=1e-12, atol=1e-13)
         for column in range(batch.unknowns.shape[1]):
             sides = []
             for by in (1e-6, -1e-6):

@@ -20,7 +20,7 @@ from grashof.synth import Candidate, Result
 from grashof.synth.quantities.kinds import FOUR_BAR
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.limit_residuals import LEAST_TRANSMISSION
-from grashof.synth.starts.loop_search import draw, standing, with_places, within_limits
+from grashof.synth.starts.loop_search import WithinLimits, draw, standing, with_places
 
 KNOWN = json.loads((Path(__file__).parents[2] / "data" / "limited.json").read_text())["tasks"]
 Search = Callable[..., Result]
@@ -60,11 +60,13 @@ def drawn(target: SearchTargets, count: int) -> Batch:
 @pytest.mark.parametrize(("rotatability", "order"), [("crank-rocker", True), ("any", True), ("any", False)])
 def test_every_limit_has_the_derivatives_of_differences(rotatability: str, over: str, order: bool) -> None:
     target = target_of(rotatability, over, order, **TIGHT)
-    model, batch = within_limits(target, 3.0), drawn(target, 12)
+    model, batch = WithinLimits(target, 3.0), drawn(target, 12)
     cost, residual, jacobian = model(batch)
     sound = np.isfinite(cost)
     assert sound.sum() >= 8
     assert (residual[:, 12:] != 0).mean() > 0.5
+    np.testing.assert_allclose(model.missed(batch)[sound], residual[sound], rtol=1e-13, atol=1e-15)
+    np.testing.assert_allclose(model.errors(batch), cost, rtol=1e-12)
     for k in range(batch.unknowns.shape[1]):
         step = np.zeros(batch.unknowns.shape[1])
         step[k] = 1e-6
@@ -80,7 +82,7 @@ def test_every_limit_has_the_derivatives_of_differences(rotatability: str, over:
 def test_oversteps_are_what_a_second_computation_says() -> None:
     target = target_of("crank-rocker", "task", **TIGHT)
     batch = drawn(target, 40)
-    cost, residual, _ = within_limits(target, 1.0)(batch)
+    cost, residual, _ = WithinLimits(target, 1.0)(batch)
     placed = standing(target, batch)
     for k in np.flatnonzero(np.isfinite(cost))[:20]:
         a, b, p = placed.a[k], placed.b[k], placed.p[k]

@@ -12,7 +12,7 @@ from grashof.problems import Box, PathTask, Problem, Region, Requirements, Targe
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
-from grashof.synth.starts.loop_search import draw, judged, standing, with_places, within_limits
+from grashof.synth.starts.loop_search import WithinLimits, draw, judged, standing, with_places
 
 UNIT, MIDDLE = 40.0, 100 - 30j  # of the points, so that lengths in sizes differ from those of the problem
 PLACE = Box((60, 140), (-np.inf, -30))
@@ -73,7 +73,7 @@ def test_residuals_of_a_limit_at_a_target(kind: str, name: str, number: int) -> 
     scaled = stated(kind, name, number)
     target = SearchTargets.of(scaled)
     batch = closed(target, 24)
-    model, free = (within_limits(each, 1.0) for each in (target, replace(target, at=())))
+    model, free = (WithinLimits(each, 1.0) for each in (target, replace(target, at=())))
     _, _, slopes = model(batch)
     expected = differences(model, batch, 1)
     even = np.abs(expected).max(axis=(1, 2)) < 100

@@ -14,13 +14,13 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import (
+    WithinLimits,
     draw,
     fitting,
     improve,
     judged,
     place,
     with_places,
-    within_limits,
 )
 
 SLIDERS = ("slider-crank", "inverted-slider-crank")
@@ -56,7 +56,7 @@ def test_derivatives_under_limits(mechanism: str, poses: bool, timed: bool, rota
     stated = {"poses": poses, "timed": timed, "rotatability": rotatability}
     target = SearchTargets.of(scaled_of(mechanism, **stated, **LIMITS, **own))
     batch = with_places(target, draw(target, 300, np.random.default_rng(3)))
-    model = within_limits(target, 0.7)
+    model = WithinLimits(target, 0.7)
     cost, residual, jacobian = model(batch)
     sound = (
         np.isfinite(cost) & (np.abs(residual).max(axis=1) < 20) & (np.abs(jacobian).max(axis=(1, 2)) < 200)
