@@ -47,7 +47,7 @@ NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
 SAME_ERROR = 1e-3  # share: a feasible linkage nearer to the best one shows that no limit binds
 SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
 # Where limits bind: numbers of the best distinct ones that continue, their steps, and the weight of the
-# limits (in sizes).
+# limits (in sizes). All but the first follow the valleys along limits, which are narrow, by bent steps.
 STAGES = ((600, 6, 1.0), (200, 60, 5.0))
 LONG, LONG_STEPS = 24, 20  # linkages of a thinned task that are improved on all targets, and their steps
 LAST_STEPS = 200  # and the best of them until little is gained
@@ -183,14 +183,13 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
     target = SearchTargets.of(scaled)
     some, index = _thinned(target)
     with np.errstate(all="ignore"):
-        batch = with_places(some, joined(drawn, best))
-        for drawing, (keep, steps, weight) in zip((True, False), STAGES, strict=True):
-            model = WithinLimits(some, weight)
+        batch = early = with_places(some, joined(drawn, best))
+        for number, (keep, steps, weight) in enumerate(STAGES):
+            model, first = WithinLimits(some, weight), number == 0
             raise_if_overdue()
-            batch = _best_distinct(some, batch, model.errors(batch), size * keep, drawn=drawing)
-            # bent steps follow the valleys along limits, which are narrow
-            batch, error = improve(model, batch, steps, 0.0, missed=None if drawing else model.missed)
-            if drawing:
+            batch = _best_distinct(some, batch, model.errors(batch), size * keep, drawn=first)
+            batch, error = improve(model, batch, steps, 0.0, missed=None if first else model.missed)
+            if first:
                 early = batch
         reached = _as_good(error)
         batch = _best_distinct(some, batch, error, len(batch), drawn=False)
